@@ -1,0 +1,66 @@
+"""The scene file: models, JSON Schema and validation. Nothing numeric, nothing of the renderer."""
+
+from .base import Model
+from .errors import Problem, pointer
+from .lights import ConstantLight, DirectionalLight, EnvmapLight, Light, PointLight
+from .materials import Material
+from .paths import CirclePath, Path, PolylinePath, SpiralPath, SvgPath
+from .patterns import MAX_PLACED, Groove, Pattern
+from .profiles import (
+    PolylineProfile,
+    Profile,
+    RoundProfile,
+    ScratchProfile,
+    TrapezoidProfile,
+    VProfile,
+)
+from .repeats import ConcentricRepeat, GridRepeat, LinearRepeat, Repeat, ScatterRepeat
+from .scales import ConstantScale, LinearScale, Scale, SineScale, TableScale
+from .scene import Camera, Mapping, Object, Render, Scene
+from .shapes import Cylinder, Mesh, Rectangle, Shape, Sphere
+
+__all__ = [
+    "MAX_PLACED",
+    "Camera",
+    "CirclePath",
+    "ConcentricRepeat",
+    "ConstantLight",
+    "ConstantScale",
+    "Cylinder",
+    "DirectionalLight",
+    "EnvmapLight",
+    "GridRepeat",
+    "Groove",
+    "Light",
+    "LinearRepeat",
+    "LinearScale",
+    "Mapping",
+    "Material",
+    "Mesh",
+    "Model",
+    "Object",
+    "Path",
+    "Pattern",
+    "PointLight",
+    "PolylinePath",
+    "PolylineProfile",
+    "Problem",
+    "Profile",
+    "Rectangle",
+    "Render",
+    "Repeat",
+    "RoundProfile",
+    "Scale",
+    "ScatterRepeat",
+    "Scene",
+    "ScratchProfile",
+    "Shape",
+    "SineScale",
+    "Sphere",
+    "SpiralPath",
+    "SvgPath",
+    "TableScale",
+    "TrapezoidProfile",
+    "VProfile",
+    "pointer",
+]
