@@ -1,6 +1,7 @@
 """The scene file: models, JSON Schema and validation. Nothing numeric, nothing of the renderer."""
 
 from .base import Model
+from .document import json_schema
 from .errors import Problem, pointer
 from .lights import ConstantLight, DirectionalLight, EnvmapLight, Light, PointLight
 from .materials import Material
@@ -18,8 +19,11 @@ from .repeats import ConcentricRepeat, GridRepeat, LinearRepeat, Repeat, Scatter
 from .scales import ConstantScale, LinearScale, Scale, SineScale, TableScale
 from .scene import Camera, Mapping, Object, Render, Scene
 from .shapes import Cylinder, Mesh, Rectangle, Shape, Sphere
+from .text import MAX_BYTES
+from .validate import Report, check, check_text
 
 __all__ = [
+    "MAX_BYTES",
     "MAX_PLACED",
     "Camera",
     "CirclePath",
@@ -49,6 +53,7 @@ __all__ = [
     "Rectangle",
     "Render",
     "Repeat",
+    "Report",
     "RoundProfile",
     "Scale",
     "ScatterRepeat",
@@ -62,5 +67,8 @@ __all__ = [
     "TableScale",
     "TrapezoidProfile",
     "VProfile",
+    "check",
+    "check_text",
+    "json_schema",
     "pointer",
 ]

@@ -2,9 +2,11 @@
 
 import math
 from collections.abc import Iterator
+from functools import cached_property
 from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
+from pydantic.config import JsonDict
 
 from . import svg
 from .base import MAX_COORDINATE, MAX_POINTS, Array, Coordinate, Degrees, Fault, Length, LengthOrZero, Model, Point2
@@ -12,7 +14,7 @@ from .base import MAX_COORDINATE, MAX_POINTS, Array, Coordinate, Degrees, Fault,
 MAX_SVG_CHARACTERS = 1_000_000
 SPIRAL_PIECES_PER_TURN = 8
 
-_WORLD_NEEDS_THREE = {
+_WORLD_NEEDS_THREE: JsonDict = {
     "if": {"properties": {"space": {"const": "world"}}, "required": ["space"]},
     "then": {"properties": {"points": {"items": {"minItems": 3}}}},
     "else": {"properties": {"points": {"items": {"maxItems": 2}}}},
@@ -22,7 +24,7 @@ _WORLD_NEEDS_THREE = {
 class PolylinePath(Model):
     """Straight lines from point to point, mitred at the corners."""
 
-    model_config = ConfigDict(json_schema_extra={**_WORLD_NEEDS_THREE})
+    model_config = ConfigDict(json_schema_extra=_WORLD_NEEDS_THREE)
 
     type: Literal["polyline"] = Field(description="The kind of path.")
     points: Annotated[
@@ -79,8 +81,8 @@ class SpiralPath(Model):
 
     def faults(self) -> Iterator[Fault]:
         if not self.outer_radius > self.inner_radius:
-            expected = f"a radius above the inner radius, {self.inner_radius:g}"
-            yield Fault(("outer_radius",), expected, f"{self.outer_radius:g}")
+            expected = f"a radius above the inner radius, {self.inner_radius:.12g}"
+            yield Fault(("outer_radius",), expected, f"{self.outer_radius:.12g}")
 
     def pieces(self) -> int:
         """About the number of arcs that the path is approximated by."""
@@ -101,19 +103,24 @@ class SvgPath(Model):
 
     def faults(self) -> Iterator[Fault]:
         try:
-            segments = svg.segments(self.d)
+            outline = self._outline
         except svg.SvgError as error:
             yield Fault(("d",), error.expected, error.found)
             return
-        if not any(segment.is_drawn() for segment in segments):
+        if not outline.is_drawn:
             yield Fault(("d",), "a path of some length", "path data that draw nothing")
-        reach = max((abs(x) for segment in segments for point in segment.points for x in point), default=0.0)
-        if not reach <= MAX_COORDINATE:
-            yield Fault(("d",), f"coordinates within {MAX_COORDINATE:g} of zero", f"a path that reaches {reach:g}")
+        if not outline.reach <= MAX_COORDINATE:
+            yield Fault(
+                ("d",), f"coordinates within {MAX_COORDINATE:g} of zero", f"a path that reaches {outline.reach:g}"
+            )
+
+    @cached_property
+    def _outline(self) -> svg.Outline:
+        return svg.outline(self.d)
 
     def pieces(self) -> int:
         """The number of lines and curves of the path."""
-        return len(svg.segments(self.d))
+        return self._outline.pieces
 
 
 Path = Annotated[PolylinePath | CirclePath | SpiralPath | SvgPath, Field(discriminator="type")]

@@ -36,14 +36,18 @@ class PolylineProfile(Model):
     def faults(self) -> Iterator[Fault]:
         for index in (0, len(self.points) - 1):
             if self.points[index][1] != 0:
-                yield Fault(("points", index, 1), "0, as a profile ends on the surface", f"{self.points[index][1]:g}")
+                yield Fault(
+                    ("points", index, 1), "0, as a profile ends on the surface", f"{self.points[index][1]:.12g}"
+                )
         for index in range(1, len(self.points)):
             before, here = self.points[index - 1], self.points[index]
             if here[0] < before[0]:
-                expected = f"a b of at least {before[0]:g} (overhanging profiles are not supported yet)"
-                yield Fault(("points", index, 0), expected, f"{here[0]:g}")
+                expected = f"a b of at least {before[0]:.12g} (overhanging profiles are not supported yet)"
+                yield Fault(("points", index, 0), expected, f"{here[0]:.12g}")
             if here == before:
-                yield Fault(("points", index), "a point apart from the one before", f"[{here[0]:g}, {here[1]:g}] again")
+                yield Fault(
+                    ("points", index), "a point apart from the one before", f"[{here[0]:.12g}, {here[1]:.12g}] again"
+                )
         width = self.points[-1][0] - self.points[0][0]
         if 0 <= width < MIN_LENGTH:
             yield Fault(("points",), f"a profile at least {MIN_LENGTH:g} wide", f"a width of {width:g}")
@@ -80,7 +84,7 @@ class TrapezoidProfile(Model):
     def faults(self) -> Iterator[Fault]:
         yield from _depth_faults(self.depth)
         if self.floor > self.width:
-            yield Fault(("floor",), f"a floor of at most the width, {self.width:g}", f"{self.floor:g}")
+            yield Fault(("floor",), f"a floor of at most the width, {self.width:.12g}", f"{self.floor:.12g}")
 
     def polyline(self) -> Points:
         """The points (b, w), from left (the least b) to right."""

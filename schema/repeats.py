@@ -91,10 +91,10 @@ class ScatterRepeat(Model):
         p0, q0, p1, q1 = self.bounds
         for index, low, high in ((2, p0, p1), (3, q0, q1)):
             if high < low:
-                yield Fault(("bounds", index), f"at least {low:g}, the lower bound", f"{high:g}")
+                yield Fault(("bounds", index), f"at least {low:.12g}, the lower bound", f"{high:.12g}")
         for name, (low, high) in (("angle", self.angle), ("scale", self.scale)):
             if high < low:
-                yield Fault((name, 1), f"at least {low:g}, the lower end of the range", f"{high:g}")
+                yield Fault((name, 1), f"at least {low:.12g}, the lower end of the range", f"{high:.12g}")
 
     def placed(self) -> int:
         """The number of grooves made."""

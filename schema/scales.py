@@ -60,10 +60,10 @@ class TableScale(Model):
     def faults(self) -> Iterator[Fault]:
         for index, wanted in ((0, 0), (len(self.t) - 1, 1)):
             if self.t[index] != wanted:
-                yield Fault(("t", index), f"{wanted}, as the table spans the path", f"{self.t[index]:g}")
+                yield Fault(("t", index), f"{wanted}, as the table spans the path", f"{self.t[index]:.12g}")
         for index in range(1, len(self.t)):
             if not self.t[index] > self.t[index - 1]:
-                yield Fault(("t", index), f"a place after {self.t[index - 1]:g}", f"{self.t[index]:g}")
+                yield Fault(("t", index), f"a place after {self.t[index - 1]:.12g}", f"{self.t[index]:.12g}")
         if len(self.values) != len(self.t):
             yield Fault(("values",), f"{len(self.t)} values, one for each t", f"{len(self.values)}")
 

@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from itertools import pairwise
 from typing import Literal
 
 Xy = tuple[float, float]
@@ -19,7 +19,7 @@ _FLAG = re.compile(r"[01]")
 # One letter an argument: n a number, f a flag.
 _ARGUMENTS = {"M": "nn", "L": "nn", "H": "n", "V": "n", "C": "n" * 6, "S": "nnnn", "Q": "nnnn", "T": "nn"}
 _ARGUMENTS |= {"A": "nnnffnn", "Z": ""}
-_SAMPLES = 16
+_SAMPLES = 8
 
 
 class SvgError(ValueError):
@@ -55,8 +55,8 @@ class Segment:
 
 
 def _bezier_radius(points: tuple[Xy, ...], t: float) -> float:
-    first = [(len(points) - 1) * (b[0] - a[0] + 1j * (b[1] - a[1])) for a, b in zip(points, points[1:], strict=False)]
-    second = [(len(first) - 1) * (b - a) for a, b in zip(first, first[1:], strict=False)]
+    first = [(len(points) - 1) * (b[0] - a[0] + 1j * (b[1] - a[1])) for a, b in pairwise(points)]
+    second = [(len(first) - 1) * (b - a) for a, b in pairwise(first)]
     velocity, acceleration = _casteljau(first, t), _casteljau(second, t)
     bend = abs((velocity.conjugate() * acceleration).imag)
     # A control point on the end makes the speed 0 there; the curve beside it tells the curvature.
@@ -65,7 +65,7 @@ def _bezier_radius(points: tuple[Xy, ...], t: float) -> float:
 
 def _casteljau(values: list[complex], t: float) -> complex:
     while len(values) > 1:
-        values = [(1 - t) * a + t * b for a, b in zip(values, values[1:], strict=False)]
+        values = [(1 - t) * a + t * b for a, b in pairwise(values)]
     return values[0]
 
 
@@ -119,13 +119,27 @@ def _place(d: str, at: int) -> str:
     return f"{d[at : at + 12]!r} at character {at + 1}"
 
 
-@lru_cache(maxsize=64)
-def segments(d: str) -> tuple[Segment, ...]:
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """What path data amount to."""
+
+    pieces: int
+    is_drawn: bool
+    reach: float
+
+
+def outline(d: str) -> Outline:
+    """Reads path data once, keeping none of them; raises SvgError where they are not well formed."""
+    pieces, is_drawn, reach = 0, False, 0.0
+    for segment in segments(d):
+        pieces += 1
+        is_drawn = is_drawn or segment.is_drawn()
+        reach = max(reach, *(abs(x) for point in segment.points for x in point))
+    return Outline(pieces, is_drawn, reach)
+
+
+def segments(d: str) -> Iterator[Segment]:
     """All segments of path data in absolute coordinates; raises SvgError where they are not well formed."""
-    return tuple(_segments(d))
-
-
-def _segments(d: str) -> Iterator[Segment]:
     here: Xy = (0.0, 0.0)
     start: Xy | None = None
     control, last = here, ""
