@@ -1,0 +1,43 @@
+"""Files that a command writes: whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from pathlib import Path
+
+SUFFIXES = (".png", ".exr", ".npy")
+
+
+def fault(path: Path) -> str | None:
+    """Why no picture can be written to `path`, found out before the work begins; None where one can."""
+    if path.suffix.lower() not in SUFFIXES:
+        return f"{path}: expected a name that ends in {', '.join(SUFFIXES)}, found {path.suffix or 'no suffix'}"
+    if path.is_dir():
+        return f"{path}: expected a file, found a folder"
+    if not path.parent.is_dir():
+        return f"{path}: expected an existing folder, found none named {path.parent}"
+    if not os.access(path.parent, os.W_OK | os.X_OK):
+        return f"{path}: expected a folder that can be written to, found {path.parent}"
+    return None
+
+
+def write(path: Path, data: bytes) -> None:
+    """Write next to `path` and rename, so that nobody ever sees half of it."""
+    handle, name = tempfile.mkstemp(prefix=".intaglio-", suffix=path.suffix, dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        os.chmod(name, 0o666 & ~_umask())
+        os.replace(name, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(name)
+        raise
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
