@@ -40,8 +40,8 @@ class Validation(BaseModel):
 
 class CompiledPattern(BaseModel):
     id: str = Field(description="hash of the pattern's content")
-    grooves: int = Field(description="after repeats")
-    pieces: int = Field(description="lines and circular arcs")
+    grooves: int = Field(description="as listed, before repeats")
+    pieces: int = Field(description="lines and circular arcs, after repeats")
     bytes: int = Field(description="of all tables together")
     grid: tuple[int, int] = Field(description="cells along p and q")
     seconds: float = Field(description="spent on this request; nearly nothing when it was compiled before")

@@ -128,7 +128,7 @@ def compiled(
     seconds = time.perf_counter() - start
     return CompiledPattern(
         id=hashlib.sha256(pattern.model_dump_json().encode()).hexdigest()[:32],
-        grooves=len(tables.grooves),
+        grooves=len(pattern.grooves),
         pieces=len(tables.pieces),
         bytes=_bytes(tables),
         grid=(int(tables.grid.shape[0]), int(tables.grid.shape[1])),

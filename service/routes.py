@@ -146,7 +146,7 @@ async def render(
         negotiate(request.headers.get("accept")),
         _method(method),
         samples,
-        _resolution(resolution) if resolution else None,
+        None if resolution is None else _resolution(resolution),
     )
     text = await bodies.read(request, here.settings.body_limit)
     scene = await anyio.to_thread.run_sync(
