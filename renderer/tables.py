@@ -94,7 +94,6 @@ class Grid(NamedTuple):
     tile: Floats  # (2,) period along p and q; 0, 0 where the pattern does not repeat
     first: Ints  # (nx * ny + 1,) where the list of cell (ix, iy), row iy * nx + ix, begins in `items`
     items: Ints  # rows of PIECE, ascending within a cell
-    special: NDArray[np.uint8]  # (nx * ny,) 1 where paths cross or end in the cell
 
 
 class Pattern(NamedTuple):
@@ -111,3 +110,94 @@ class Pattern(NamedTuple):
     depth: float  # the lowest below, positive
     width: float  # the largest |b| of any cross-section, scale included
     reach: float  # the farthest that a cross-section gets from its centre line, ends and mitres included
+    parallel: bool  # all pieces are lines of one direction
+
+
+MATERIAL = np.dtype(
+    [
+        ("base_color", "f8", (3,)),
+        ("emissive", "f8", (3,)),
+        ("metallic", "f8"),
+        ("alpha", "f8"),  # roughness squared; 0: ideal, no response to direct light
+        ("f0", "f8"), ("f90", "f8"),  # Fresnel reflectance of the dielectric, head on and grazing
+        ("transmission", "f8"),
+    ]
+)  # fmt: skip
+
+DIRECTIONAL, POINT = 0, 1
+
+LIGHT = np.dtype(
+    [
+        ("kind", "i4"),
+        ("vector", "f8", (3,)),  # DIRECTIONAL: unit vector to the light; POINT: its position, world units
+        ("color", "f8", (3,)),  # DIRECTIONAL: irradiance on a plane facing it; POINT: intensity
+    ]
+)
+
+RECTANGLE, SPHERE, CYLINDER, MESH = 0, 1, 2, 3
+
+OBJECT = np.dtype(
+    [
+        ("shape", "i4"),
+        ("size", "f8", (2,)),  # rectangle: width, height; sphere: radius; cylinder: radius, height
+        ("rotation", "f8", (3, 3)),  # columns: the object's axes in the world
+        ("translation", "f8", (3,)),
+        ("mapping", "f8", (4,)),  # pattern = uv * (m0, m1) + (m2, m3)
+        ("material", "i4"),  # row of MATERIAL
+        ("pattern", "i4"),  # index of the scene's compiled patterns; -1: bare
+    ]
+)
+
+HIT = np.dtype(
+    [
+        ("object", "i4"),  # row of OBJECT; -1: nothing was hit
+        ("face", "i4"),  # mesh: triangle; cylinder: 0 the side, 1 a cap; else 0
+        ("t", "f8"),  # distance along the ray in lengths of its direction
+        ("u", "f8"), ("v", "f8"),  # texture coordinates; on a cap: local x and y
+        ("normal", "f8", (3,)),  # geometric, world, unit, to the outside
+    ]
+)  # fmt: skip
+
+FRAME = np.dtype(
+    [
+        ("object", "i4"),
+        ("grooved", "i4"),  # 0: the back of a surface or a cylinder's cap, which carry no pattern
+        ("origin", "f8", (3,)),  # a point of the surface, world
+        ("pq", "f8", (2,)),  # its pattern coordinates
+        ("axes", "f8", (3, 3)),  # columns: dP/dp, dP/dq, sigma N: world units a pattern unit
+        ("dual", "f8", (3, 3)),  # inverse of `axes`: rows carry world vectors, and normals back, to pattern space
+        ("eye", "f8", (3,)),  # the camera in pattern space (absolute p, q; w)
+    ]
+)
+"""The tangent plane at a surface point: X = origin + axes (x - (pq, 0)). A flat object has one for all its pixels."""
+
+FOOTPRINT = np.dtype(
+    [
+        ("pixel", "i4"),  # row-major in the tile
+        ("frame", "i4"),  # row of FRAME
+        ("blocked", "u8"),  # bit l: another object stands between the surface and light l
+        ("x", "f8"), ("y", "f8"), ("size", "f8"),  # its square on the screen: left, top, edge; in pixels
+    ]
+)  # fmt: skip
+"""A square of the screen all of which sees one smooth surface: a pixel, or a part of one on a silhouette."""
+
+
+class Camera(NamedTuple):
+    """A pinhole: the ray through screen point (x, y), in pixels from the top left, is corner + x right + y down."""
+
+    origin: Floats  # (3,) world
+    corner: Floats  # (3,)
+    right: Floats  # (3,)
+    down: Floats  # (3,)
+
+
+class Lighting(NamedTuple):
+    """All that shines."""
+
+    lights: NDArray[np.void]  # (n,) LIGHT, n <= 64
+    sky: Floats  # (3,) radiance of the constant sky
+
+
+METHODS = ("none", "base", "segment", "line", "csg", "geometry")
+"""What the AOV `method` counts: the index of the method that a pixel took; `none` where the camera sees no object."""
+NONE, BASE, SEGMENT_METHOD, LINE, CSG, GEOMETRY = range(6)

@@ -1,0 +1,327 @@
+"""A scene's patterns become tables: the one door where pydantic's models end.
+
+Two steps, each kept by content. *Paths*: every path becomes lines and arcs, every repeat is written out, the grid is
+built; profiles, scales, materials and priorities have no part in it. *Patterns*: the pieces get their grooves.
+A new camera, light or material thus compiles nothing, and a new profile or perturbation leaves the grid as it is.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import schema
+from renderer import grid, paths, repeats
+from renderer.geometry.pieces import LEAST_SCALE
+from renderer.tables import (
+    CORNER,
+    FLAT,
+    GROOVE,
+    PIECE,
+    PROFILE,
+    PROFILE_ROW,
+    SCALE_CONSTANT,
+    SCALE_LINEAR,
+    SCALE_SINE,
+    SCALE_TABLE,
+    SMOOTH,
+    Chain,
+    Grid,
+    Pattern,
+)
+
+CURVE_TOLERANCE = 2e-5
+"""How far arcs may leave a Bézier or a spiral, as a part of the path's extent."""
+WIDTH_TOLERANCE = 1 / 20
+"""... and as a part of the groove's width, which decides only for grooves that are narrow for their path."""
+BYTES_KEPT = 256 << 20  # compiled patterns and paths in a cache
+
+Project = Callable[[Sequence[tuple[float, ...]]], Sequence[tuple[float, float]]]
+"""Takes points of world space to an object's pattern plane."""
+
+
+class Paths(NamedTuple):
+    """The placed paths of a pattern: pieces without grooves' properties (GROOVE counts from 0), and their grid."""
+
+    pieces: NDArray[np.void]
+    grid: Grid
+
+
+class Compiled(NamedTuple):
+    """A pattern's tables, and the names that its material slots stand for."""
+
+    tables: Pattern
+    materials: tuple[str, ...]
+
+    @property
+    def bytes(self) -> int:
+        """Memory of all tables."""
+        return table_bytes(self.tables)
+
+
+def table_bytes(tables: tuple[object, ...]) -> int:
+    """Memory of the arrays in nested named tuples."""
+    return sum(
+        item.nbytes if isinstance(item, np.ndarray) else table_bytes(item) if isinstance(item, tuple) else 8
+        for item in tables
+    )
+
+
+class PatternCache:
+    """Compiled patterns by content, the oldest dropped beyond `limit` bytes. Safe for many threads."""
+
+    def __init__(self, limit: int = BYTES_KEPT) -> None:
+        self.limit = limit
+        self.builds = {"paths": 0, "patterns": 0}
+        self._lock = threading.Lock()
+        self._kept: OrderedDict[str, Paths | Compiled] = OrderedDict()
+        self._bytes = 0
+
+    def pattern(self, pattern: schema.Pattern, project: Project | None = None, place: str = "") -> Compiled:
+        """The tables of a pattern. `project` and `place`, which names it, serve paths drawn in world space."""
+        if not any(_in_world(groove) for groove in pattern.grooves):
+            place = ""
+        key = _digest(pattern.model_dump_json(), place)
+        kept = self._get(key)
+        if isinstance(kept, Compiled):
+            return kept
+        shape = pattern.model_dump_json(include={"tile": True, "grooves": {"__all__": {"path", "repeat"}}})
+        tolerances = [_tolerance(groove) for groove in pattern.grooves]
+        paths_key = _digest("paths", shape, repr(tolerances), place)
+        traced = self._get(paths_key)
+        if not isinstance(traced, Paths):
+            traced = trace(pattern, tolerances, project)
+            self._put(paths_key, traced, "paths")
+        compiled = dress(pattern, traced)
+        self._put(key, compiled, "patterns")
+        return compiled
+
+    def _get(self, key: str) -> Paths | Compiled | None:
+        with self._lock:
+            if key in self._kept:
+                self._kept.move_to_end(key)
+            return self._kept.get(key)
+
+    def _put(self, key: str, value: Paths | Compiled, kind: str) -> None:
+        with self._lock:
+            self.builds[kind] += 1
+            if key not in self._kept:
+                self._kept[key] = value
+                self._bytes += table_bytes(value)
+            while self._bytes > self.limit and len(self._kept) > 1:
+                self._bytes -= table_bytes(self._kept.popitem(last=False)[1])
+
+
+def _digest(*parts: str) -> str:
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def _in_world(groove: schema.Groove) -> bool:
+    return isinstance(groove.path, schema.PolylinePath) and groove.path.space == "world"
+
+
+def _tolerance(groove: schema.Groove) -> float:
+    """How far arcs may leave the groove's path, pattern units; infinite where the groove has no width.
+
+    A power of eight, so that it rarely changes with the profile: never while the path's extent decides.
+    """
+    if not isinstance(groove.path, schema.SvgPath | schema.SpiralPath):
+        return math.inf
+    width = 2.0 * groove.half_width()
+    return float(8.0 ** math.floor(math.log(width * WIDTH_TOLERANCE, 8.0))) if width > 0.0 else math.inf
+
+
+def trace(pattern: schema.Pattern, tolerances: Sequence[float], project: Project | None) -> Paths:
+    """The pieces of all grooves with their repeats, and the grid over them."""
+    parts = []
+    widths = []
+    for row, (groove, tolerance) in enumerate(zip(pattern.grooves, tolerances, strict=True)):
+        placed = _placed(groove, _chains(groove.path, tolerance, project))
+        placed["groove"] = row
+        parts.append(placed)
+        widths.append(2.0 * groove.half_width())
+    pieces = np.concatenate(parts)
+    width = float(np.average(widths, weights=[max(len(part), 1) for part in parts]))
+    return Paths(pieces, grid.build(pieces, pattern.tile, max(width, 1e-9)))
+
+
+def _chains(path: schema.Path, tolerance: float, project: Project | None) -> list[Chain]:
+    if isinstance(path, schema.PolylinePath):
+        if path.space == "world":
+            if project is None:
+                raise ValueError("a path in world space needs an object to lie on")
+            return paths.polyline(project(path.points), path.closed)
+        return paths.polyline([(p[0], p[1]) for p in path.points], path.closed)
+    if isinstance(path, schema.CirclePath):
+        return paths.circle(path.center, path.radius)
+    if isinstance(path, schema.SpiralPath):
+        fine = min(tolerance, CURVE_TOLERANCE * 2.0 * path.outer_radius)
+        return paths.spiral(path.center, path.inner_radius, path.outer_radius, path.turns, path.angle, fine)
+    fine = min(tolerance, CURVE_TOLERANCE * path.extent())
+    return paths.svg(path.d, path.flip_y, fine)
+
+
+def _placed(groove: schema.Groove, chains: Sequence[Chain]) -> NDArray[np.void]:
+    """The pieces of a groove at all its places."""
+    repeat = groove.repeat
+    if isinstance(repeat, schema.ConcentricRepeat) and isinstance(groove.path, schema.CirclePath):
+        radii = repeats.concentric(repeat.count, repeat.step, groove.path.radius)
+        return np.concatenate([_pieces(chain) for r in radii for chain in paths.circle(groove.path.center, float(r))])
+    base = np.concatenate([_pieces(chain) for chain in chains]) if chains else np.empty(0, PIECE)
+    if repeat is None:
+        return base
+    if isinstance(repeat, schema.LinearRepeat):
+        places = repeats.linear(repeat.count, repeat.step)
+    elif isinstance(repeat, schema.GridRepeat):
+        places = repeats.grid(repeat.counts, repeat.steps)
+    elif isinstance(repeat, schema.ScatterRepeat):
+        places = repeats.scatter(repeat.count, repeat.seed, repeat.bounds, repeat.angle, repeat.scale)
+    else:
+        raise TypeError(type(repeat).__name__)
+    placed = np.tile(base, len(places))
+    moved = repeats.place_all(base[["x", "y", "tx", "ty", "length", "curvature"]], places)
+    for name in ("x", "y", "tx", "ty", "length", "curvature"):
+        placed[name] = moved[name]
+    placed["size"] = np.repeat(places["scale"], len(base))
+    return placed
+
+
+def _pieces(chain: Chain) -> NDArray[np.void]:
+    """The pieces of a chain, with its corners and the path parameter. Open ends are FLAT until the groove says more."""
+    segments = chain.segments
+    n = len(segments)
+    pieces = np.zeros(n, PIECE)
+    for name in segments.dtype.names or ():
+        pieces[name] = segments[name]
+    pieces["size"] = 1.0
+    ends = np.cumsum(segments["length"])
+    pieces["t0"][1:] = ends[:-1] / ends[-1]
+    pieces["t1"] = ends / ends[-1]
+    if chain.closed and n == 1 and segments["curvature"][0] != 0.0:
+        pieces["closed"] = 1
+        return pieces
+    angle = segments["length"] * segments["curvature"]
+    fx = segments["tx"] * np.cos(angle) - segments["ty"] * np.sin(angle)
+    fy = segments["tx"] * np.sin(angle) + segments["ty"] * np.cos(angle)
+    nx, ny = np.roll(segments["tx"], -1), np.roll(segments["ty"], -1)
+    turn = np.arctan2(fx * ny - fy * nx, fx * nx + fy * ny)
+    joint = np.where(np.abs(turn) > paths.SNAP, CORNER, SMOOTH).astype(np.uint8)
+    mitre = np.where(joint == CORNER, np.tan(0.5 * turn), 0.0)
+    if not chain.closed:
+        joint[-1], mitre[-1] = FLAT, 0.0
+    pieces["finish_end"], pieces["finish_mitre"] = joint, mitre
+    pieces["start_end"], pieces["start_mitre"] = np.roll(joint, 1), np.roll(mitre, 1)
+    return pieces
+
+
+def dress(pattern: schema.Pattern, traced: Paths) -> Compiled:
+    """The pattern's tables: traced paths with their grooves' cross-sections."""
+    pieces = traced.pieces.copy()
+    grooves = np.zeros(len(pattern.grooves), GROOVE)
+    profiles = _Profiles()
+    names: list[str] = []
+    slots: list[int] = []
+    tables: list[tuple[float, float]] = []
+    levels = sorted({groove.priority for groove in pattern.grooves})
+    for row, groove in enumerate(pattern.grooves):
+        g = grooves[row]
+        g["profile"] = profiles.row(groove.profile.polyline())
+        g["priority"] = levels.index(groove.priority)
+        g["slot"] = len(slots)
+        count = profiles.rows[g["profile"]]["count"] - 1
+        material = groove.material
+        for name in (material,) * count if material is None or isinstance(material, str) else material:
+            if name is not None and name not in names:
+                names.append(name)
+            slots.append(-1 if name is None else names.index(name))
+        _scale(g, groove.scale, tables)
+    if pattern.grooves:
+        ends = np.array([PROFILE if groove.ends == "profile" else FLAT for groove in pattern.grooves], np.uint8)
+        for side in ("start_end", "finish_end"):
+            pieces[side] = np.where(pieces[side] == FLAT, ends[pieces["groove"]], pieces[side])
+    rows = np.array([tuple(row.values()) for row in profiles.rows], PROFILE_ROW)
+    of = rows[grooves["profile"]][pieces["groove"]]
+    most = grooves["scale_max"][pieces["groove"]] * pieces["size"]
+    half = np.maximum(np.abs(of["left"]), np.abs(of["right"])) * most
+    mitre = np.maximum(np.abs(pieces["start_mitre"]), np.abs(pieces["finish_mitre"])).astype(float)
+    ended = (pieces["start_end"] == PROFILE) | (pieces["finish_end"] == PROFILE)
+    far = half * np.maximum(np.sqrt(1.0 + mitre**2), np.where(ended, math.sqrt(2.0), 1.0))
+    lines = bool(np.all(pieces["curvature"] == 0.0))
+    sine = pieces["tx"] * pieces["ty"][0] - pieces["ty"] * pieces["tx"][0] if len(pieces) else np.zeros(0)
+    tables_out = Pattern(
+        grid=traced.grid,
+        pieces=pieces,
+        grooves=grooves,
+        profiles=rows,
+        points=np.array(profiles.points, float).reshape(-1, 2),
+        facet_slot=np.array(slots, np.int32),
+        scale_table=np.array(tables, float).reshape(-1, 2),
+        height=float(np.max(of["height"] * most, initial=0.0)),
+        depth=float(np.max(of["depth"] * most, initial=0.0)),
+        width=float(np.max(half, initial=0.0)),
+        reach=float(np.max(far, initial=0.0)),
+        parallel=lines and bool(np.all(np.abs(sine) < 1e-12)),
+    )
+    return Compiled(tables_out, tuple(names))
+
+
+def _scale(g: np.void, scale: schema.Scale, tables: list[tuple[float, float]]) -> None:
+    """Write a scale into its row of GROOVE."""
+    g["scale_max"] = max(scale.largest(), LEAST_SCALE)
+    if isinstance(scale, schema.ConstantScale):
+        g["scale_kind"], g["scale_a"] = SCALE_CONSTANT, max(scale.value, LEAST_SCALE)
+    elif isinstance(scale, schema.LinearScale):
+        g["scale_kind"], g["scale_a"], g["scale_b"] = SCALE_LINEAR, scale.start, scale.end
+    elif isinstance(scale, schema.SineScale):
+        g["scale_kind"], g["scale_a"], g["scale_b"] = SCALE_SINE, scale.amplitude, scale.periods
+        g["scale_c"] = math.radians(scale.phase)
+    else:
+        g["scale_kind"], g["table_start"], g["table_count"] = SCALE_TABLE, len(tables), len(scale.t)
+        tables.extend(zip(scale.t, scale.values, strict=True))
+
+
+class _Profiles:
+    """The distinct profiles of a pattern."""
+
+    def __init__(self) -> None:
+        self.rows: list[dict[str, float]] = []
+        self.points: list[tuple[float, float]] = []
+        self._known: dict[tuple[tuple[float, float], ...], int] = {}
+
+    def row(self, points: tuple[tuple[float, float], ...]) -> int:
+        if points not in self._known:
+            self._known[points] = len(self.rows)
+            first, last = internal(points)
+            heights = [w for _, w in points]
+            self.rows.append(
+                {
+                    "start": len(self.points),
+                    "count": len(points),
+                    "inner_first": first,
+                    "inner_last": last,
+                    "left": points[0][0],
+                    "right": points[-1][0],
+                    "height": max(0.0, *heights),
+                    "depth": max(0.0, *(-w for w in heights)),
+                }
+            )
+            self.points.extend(points)
+        return self._known[points]
+
+
+def internal(points: Sequence[tuple[float, float]]) -> tuple[int, int]:
+    """The internal facets first <= i < last: what is left of the polyline when, from each end towards the centre, the
+    facets before the first descending one are taken off (DESIGN 1.2; 003, 5.3). Equal where nothing is left."""
+    first, last = 0, len(points) - 1
+    while first < len(points) - 1 and points[first + 1][1] >= points[first][1]:
+        first += 1
+    while last > 0 and points[last - 1][1] >= points[last][1]:
+        last -= 1
+    return (first, last) if first < last else (0, 0)

@@ -1,0 +1,138 @@
+"""Method `csg`: rays against the spans of added and removed material (003), n stratified samples a footprint.
+
+Right for every case, however slow. `auto` sends it what no cheaper method takes, and then a footprint whose first few
+samples all fall on one facet, all lit alike, is left at those.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from renderer.geometry.query import find, nearby
+from renderer.geometry.random import jitter, seed_of
+from renderer.geometry.solid import events, meet, normal_of
+from renderer.geometry.view import on_plane, view_of
+from renderer.kernel import kernel
+from renderer.shading import ambient, direction_to_pattern, light_to_pattern, lit_by, normal_to_world, to_world, unit
+from renderer.tables import CSG, Camera, Lighting, Pattern
+
+SHARED = 32  # up to so many pieces are found once for all samples of a footprint
+CAPACITY = 8192  # pieces near one stretch of a ray
+PROBE = 4  # `auto` begins with PROBE * PROBE samples
+
+
+@kernel
+def csg(
+    samples: int, probe: bool, seed: int, pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64],
+    frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void],
+    slots: NDArray[np.int32], albedo: NDArray[np.float64], radiance: NDArray[np.float64], method: NDArray[np.uint8],
+) -> None:  # fmt: skip
+    """Shade the footprints `chosen` of one object; write their radiance (n, 3) and method.
+
+    samples: at least so many a footprint, in a grid of strata. slots: rows of `materials` for the pattern's facets,
+    the object's own first.
+    """
+    found = nearby(pattern, CAPACITY)
+    spans = events(pattern)
+    lights = lighting.lights
+    high, low = pattern.height, -pattern.depth
+    thin = 1e-6 * (high - low) + 1e-300
+    for index in chosen:
+        footprint = footprints[index]
+        frame = frames[footprint.frame]
+        view = view_of(footprint, frame, camera)
+        method[index] = CSG
+        dw = frame.eye[2]
+        top = min(high + thin, dw * (1.0 - 1e-9))
+
+        # The pieces that any sample may meet, where they are few.
+        p0, p1, q0, q1 = math.inf, -math.inf, math.inf, -math.inf
+        for k in range(4):
+            cp, cq = on_plane(view, float(k & 1), float(k >> 1))
+            gp, gq = (frame.eye[0] - cp) / dw, (frame.eye[1] - cq) / dw
+            for w in (low, top):
+                p0, p1 = min(p0, cp + w * gp), max(p1, cp + w * gp)
+                q0, q1 = min(q0, cq + w * gq), max(q1, cq + w * gq)
+        fp0, fp1, fq0, fq1 = p0, p1, q0, q1
+        for l in range(len(lights)):
+            d = light_to_pattern(frame, lights[l])
+            if d[2] > 0.0:
+                gp, gq = (d[0] - d[3] * view.p) / d[2], (d[1] - d[3] * view.q) / d[2]
+                fp0, fp1 = min(fp0, p0 + (high - low) * gp), max(fp1, p1 + (high - low) * gp)
+                fq0, fq1 = min(fq0, q0 + (high - low) * gq), max(fq1, q1 + (high - low) * gq)
+        margin = pattern.reach
+        shared = find(pattern, found, fp0 - margin, fq0 - margin, fp1 + margin, fq1 + margin, SHARED)
+
+        columns = int(math.ceil(math.sqrt(samples)))
+        rows = (samples + columns - 1) // columns
+        state = seed_of(seed, footprint.x, footprint.y)
+        red = green = blue = 0.0
+        taken = 0
+        for stage in range(2):
+            across, down = (PROBE, PROBE) if stage == 0 else (columns, rows)
+            if stage == 0 and (not probe or samples <= PROBE * PROBE):
+                continue
+            red = green = blue = 0.0
+            taken = 0
+            alike = True
+            first_facet, first_found, first_lit = 0, 0, np.uint64(0)
+            for i in range(across * down):
+                state, ju = jitter(state)
+                state, jv = jitter(state)
+                u, v = (i % across + ju) / across, (i // across + jv) / down
+                p, q = on_plane(view, u, v)
+                gp, gq = (frame.eye[0] - p) / dw, (frame.eye[1] - q) / dw
+                m = meet(pattern, found, spans, shared, p, q, gp, gq, top, low - thin, CAPACITY, False)
+                at = max(m.w, low)
+                x, y = p + at * gp, q + at * gq
+                n = normal_of(pattern, found, m, x, y, gp, gq)
+                slot = 0
+                if m.found >= 0:
+                    item = found.piece[m.found]
+                    if m.facet >= 0:
+                        slot = pattern.facet_slot[pattern.grooves[pattern.pieces[item].groove].slot + m.facet] + 1
+                else:
+                    item = -1
+                material = materials[slots[slot]]
+                n_world = normal_to_world(frame, n)
+                eye_world = to_world(frame, frame.eye[0], frame.eye[1], dw)
+                at_world = to_world(frame, x, y, at)
+                e = unit((eye_world[0] - at_world[0], eye_world[1] - at_world[1], eye_world[2] - at_world[2]))
+                colour = ambient(material, lighting.sky, albedo, n_world, e)
+                red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
+                lit = np.uint64(0)
+                for l in range(len(lights)):
+                    if (footprint.blocked >> np.uint64(l)) & np.uint64(1):
+                        continue
+                    d = light_to_pattern(frame, lights[l])
+                    lp, lq, lw = d[0] - d[3] * x, d[1] - d[3] * y, d[2] - d[3] * at
+                    if d[2] <= 0.0 or lw <= 0.0 or n[0] * lp + n[1] * lq + n[2] * lw <= 0.0:
+                        continue
+                    colour = lit_by(lights[l], material, n_world, e, at_world)
+                    if colour[0] <= 0.0 and colour[1] <= 0.0 and colour[2] <= 0.0:
+                        continue
+                    if at < high or at < 0.0:
+                        lp, lq = lp / lw, lq / lw
+                        roof = high + thin if d[3] == 0.0 else min(high + thin, d[2])
+                        if roof > at + thin:
+                            s = meet(
+                                pattern, found, spans, shared, x - at * lp, y - at * lq, lp, lq,
+                                roof, at + thin, CAPACITY, True,
+                            )  # fmt: skip
+                            if s.w > -math.inf:
+                                continue
+                    lit |= np.uint64(1) << np.uint64(l)
+                    red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
+                if taken == 0:
+                    first_facet, first_found, first_lit = m.facet, item, lit
+                elif m.facet != first_facet or item != first_found or lit != first_lit:
+                    alike = False
+                    if stage == 0:
+                        break
+                taken += 1
+            if stage == 0 and alike:
+                break
+        radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / taken, green / taken, blue / taken

@@ -1,0 +1,92 @@
+"""Local coordinates of a line or an arc, and the scale of its cross-section.
+
+(s, b) are the arc length from the piece's start and the signed distance to the left of the path, pattern units.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from renderer.kernel import leaf
+from renderer.tables import SCALE_CONSTANT, SCALE_LINEAR, SCALE_SINE, Pattern
+
+LEAST_SCALE = 1e-9  # a cross-section shrunk to a point keeps a direction
+
+
+@leaf
+def locate(piece: np.void, x: float, y: float) -> tuple[float, float]:
+    """(s, b) of the point (x, y). On an arc s is taken round the circle from the arc's middle."""
+    dx, dy = x - piece.x, y - piece.y
+    if piece.curvature == 0.0:
+        return dx * piece.tx + dy * piece.ty, dy * piece.tx - dx * piece.ty
+    radius = 1.0 / piece.curvature  # signed, the centre lies at b = radius
+    ux, uy = piece.ty * radius, -piece.tx * radius  # from the centre to the start point
+    vx, vy = dx + ux, dy + uy
+    distance = math.hypot(vx, vy)
+    turn = math.atan2(ux * vy - uy * vx, ux * vx + uy * vy)
+    s = turn * radius
+    half = math.pi * abs(radius)
+    if s < 0.5 * piece.length - half:
+        s += 2.0 * half
+    elif s > 0.5 * piece.length + half:
+        s -= 2.0 * half
+    return s, radius - math.copysign(distance, radius)
+
+
+@leaf
+def tangent_at(piece: np.void, s: float) -> tuple[float, float]:
+    """Unit tangent at arc length s."""
+    if piece.curvature == 0.0:
+        return piece.tx, piece.ty
+    c, d = math.cos(s * piece.curvature), math.sin(s * piece.curvature)
+    return piece.tx * c - piece.ty * d, piece.tx * d + piece.ty * c
+
+
+@leaf
+def point_at(piece: np.void, s: float) -> tuple[float, float]:
+    """The path's point at arc length s."""
+    if piece.curvature == 0.0:
+        return piece.x + s * piece.tx, piece.y + s * piece.ty
+    k = piece.curvature
+    along, across = math.sin(s * k) / k, (1.0 - math.cos(s * k)) / k
+    return piece.x + along * piece.tx - across * piece.ty, piece.y + along * piece.ty + across * piece.tx
+
+
+@leaf
+def scale_at(pattern: Pattern, groove: np.void, piece: np.void, s: float) -> tuple[float, float]:
+    """The scale of the cross-section at arc length s, placement included, and its derivative by s (1/pattern unit).
+
+    Past the ends it keeps the end's value.
+    """
+    if groove.scale_kind == SCALE_CONSTANT:
+        return groove.scale_a * piece.size, 0.0
+    fraction = min(max(s / piece.length, 0.0), 1.0)
+    rate = (piece.t1 - piece.t0) / piece.length if 0.0 < fraction < 1.0 else 0.0
+    t = piece.t0 + (piece.t1 - piece.t0) * fraction
+    if groove.scale_kind == SCALE_LINEAR:
+        value = groove.scale_a + (groove.scale_b - groove.scale_a) * t
+        slope = groove.scale_b - groove.scale_a
+    elif groove.scale_kind == SCALE_SINE:
+        turns = 2.0 * math.pi * groove.scale_b
+        value = 1.0 + groove.scale_a * math.sin(turns * t + groove.scale_c)
+        slope = groove.scale_a * turns * math.cos(turns * t + groove.scale_c)
+    else:
+        value, slope = interpolate(pattern.scale_table, groove.table_start, groove.table_count, t)
+    return max(value, LEAST_SCALE) * piece.size, slope * rate * piece.size
+
+
+@leaf
+def interpolate(table: NDArray[np.float64], start: int, count: int, t: float) -> tuple[float, float]:
+    """Value and slope at t of the polyline through `count` rows (t, value) from row `start`."""
+    low, high = start, start + count - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if table[middle, 0] <= t:
+            low = middle
+        else:
+            high = middle
+    slope = (table[high, 1] - table[low, 1]) / (table[high, 0] - table[low, 0])
+    return table[low, 1] + slope * (t - table[low, 0]), slope

@@ -1,0 +1,295 @@
+"""Rays against the bare shapes, and their tangent frames.
+
+Rectangles, spheres and cylinders are met in closed form, in double precision: a tessellation would put facets on
+their silhouettes, and single precision would shift footprints by what a fine groove is wide.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from renderer.kernel import kernel, leaf
+from renderer.tables import CYLINDER, MESH, RECTANGLE, SPHERE, Floats, Ints
+
+START = 1e-6  # shadow rays leave the surface by this part of the distance to the scene's origin
+
+
+class Triangles(NamedTuple):
+    """All mesh objects' triangles, in the world."""
+
+    corners: Floats  # (n, 3, 3)
+    uv: Floats  # (n, 3, 2)
+    normals: Floats  # (n, 3, 3) unit, at the corners
+    object: Ints  # (n,) row of OBJECT
+
+
+@leaf
+def solve(a: float, b: float, c: float) -> tuple[float, float]:
+    """The roots of a t^2 + 2 b t + c, the smaller first; NaN where there are none."""
+    root = b * b - a * c
+    if root < 0.0 or a == 0.0:
+        return math.nan, math.nan
+    q = -(b + math.copysign(math.sqrt(root), b))
+    t0, t1 = q / a, (c / q if q != 0.0 else 0.0)
+    return (t0, t1) if t0 < t1 else (t1, t0)
+
+
+@leaf
+def local(obj: np.void, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """A world vector in the object's axes."""
+    r = obj.rotation
+    return (
+        r[0, 0] * x + r[1, 0] * y + r[2, 0] * z,
+        r[0, 1] * x + r[1, 1] * y + r[2, 1] * z,
+        r[0, 2] * x + r[1, 2] * y + r[2, 2] * z,
+    )
+
+
+@leaf
+def meet_shape(obj: np.void, o: tuple[float, float, float], d: tuple[float, float, float], far: float) -> tuple[float, int]:
+    """The nearest t in (0, far) at which o + t d (the object's axes) meets the shape, and the face; inf: nowhere."""
+    if obj.shape == RECTANGLE:
+        if d[2] != 0.0:
+            t = -o[2] / d[2]
+            if 0.0 < t < far:
+                x, y = o[0] + t * d[0], o[1] + t * d[1]
+                if abs(x) <= 0.5 * obj.size[0] and abs(y) <= 0.5 * obj.size[1]:
+                    return t, 0
+        return math.inf, 0
+    if obj.shape == SPHERE:
+        a = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+        b = o[0] * d[0] + o[1] * d[1] + o[2] * d[2]
+        c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] - obj.size[0] * obj.size[0]
+        t0, t1 = solve(a, b, c)
+        if 0.0 < t0 < far:
+            return t0, 0
+        return (t1, 0) if 0.0 < t1 < far else (math.inf, 0)
+    if obj.shape == CYLINDER:
+        best, face = math.inf, 0
+        a, b = d[0] * d[0] + d[1] * d[1], o[0] * d[0] + o[1] * d[1]
+        t0, t1 = solve(a, b, o[0] * o[0] + o[1] * o[1] - obj.size[0] * obj.size[0])
+        half = 0.5 * obj.size[1]
+        for k in range(2):
+            t = t0 if k == 0 else t1
+            if 0.0 < t < min(far, best) and abs(o[2] + t * d[2]) <= half:
+                best, face = t, 0
+        if d[2] != 0.0:
+            for k in range(2):
+                t = ((half if k == 0 else -half) - o[2]) / d[2]
+                if 0.0 < t < min(far, best):
+                    x, y = o[0] + t * d[0], o[1] + t * d[1]
+                    if x * x + y * y <= obj.size[0] * obj.size[0]:
+                        best, face = t, 1
+        return best, face
+    return math.inf, 0
+
+
+@leaf
+def touch(obj: np.void, face: int, x: float, y: float, z: float) -> tuple[float, float, float, float, float]:
+    """(u, v) and the outside normal, in the object's axes, of the shape's point (x, y, z)."""
+    if obj.shape == SPHERE:
+        r = obj.size[0]
+        u = math.atan2(y, x) / (2.0 * math.pi)
+        v = 0.5 + math.asin(min(max(z / r, -1.0), 1.0)) / math.pi
+        return u if u >= 0.0 else u + 1.0, v, x / r, y / r, z / r
+    if obj.shape == CYLINDER:
+        if face == 1:
+            return x, y, 0.0, 0.0, math.copysign(1.0, z)
+        u = math.atan2(y, x) / (2.0 * math.pi)
+        return (u if u >= 0.0 else u + 1.0), z / obj.size[1] + 0.5, x / obj.size[0], y / obj.size[0], 0.0
+    return x / obj.size[0] + 0.5, y / obj.size[1] + 0.5, 0.0, 0.0, 1.0
+
+
+@kernel
+def cast(objects: NDArray[np.void], origin: Floats, directions: Floats, hits: NDArray[np.void]) -> None:
+    """The nearest hit of each ray from `origin` (3,) along `directions` (n, 3), with all shapes but meshes."""
+    for i in range(len(directions)):
+        hit = hits[i]
+        hit.object = -1
+        hit.t = math.inf
+        dx, dy, dz = directions[i, 0], directions[i, 1], directions[i, 2]
+        for k in range(len(objects)):
+            obj = objects[k]
+            if obj.shape == MESH:
+                continue
+            s = obj.translation
+            o = local(obj, origin[0] - s[0], origin[1] - s[1], origin[2] - s[2])
+            d = local(obj, dx, dy, dz)
+            t, face = meet_shape(obj, o, d, hit.t)
+            if t < hit.t:
+                hit.object, hit.face, hit.t = k, face, t
+                hit.u, hit.v, nx, ny, nz = touch(obj, face, o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2])
+                r = obj.rotation
+                hit.normal[0] = r[0, 0] * nx + r[0, 1] * ny + r[0, 2] * nz
+                hit.normal[1] = r[1, 0] * nx + r[1, 1] * ny + r[1, 2] * nz
+                hit.normal[2] = r[2, 0] * nx + r[2, 1] * ny + r[2, 2] * nz
+
+
+@kernel
+def cast_triangles(triangles: Triangles, origin: Floats, directions: Floats, rows: Ints, hits: NDArray[np.void]) -> None:
+    """Take what Embree found, triangle `rows[i]` (n,) or -1, in double precision where it is nearer than `hits`."""
+    for i in range(len(rows)):
+        row = rows[i]
+        if row < 0:
+            continue
+        a, b, c = triangles.corners[row, 0], triangles.corners[row, 1], triangles.corners[row, 2]
+        e1 = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
+        e2 = (c[0] - a[0], c[1] - a[1], c[2] - a[2])
+        n = (e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2], e1[0] * e2[1] - e1[1] * e2[0])
+        area = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+        d = directions[i]
+        slope = n[0] * d[0] + n[1] * d[1] + n[2] * d[2]
+        if area == 0.0 or slope == 0.0:
+            continue
+        o = (origin[0] - a[0], origin[1] - a[1], origin[2] - a[2])
+        t = -(n[0] * o[0] + n[1] * o[1] + n[2] * o[2]) / slope
+        if not 0.0 < t < hits[i].t:
+            continue
+        x = (o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2])
+        m = (x[1] * e2[2] - x[2] * e2[1], x[2] * e2[0] - x[0] * e2[2], x[0] * e2[1] - x[1] * e2[0])
+        beta = (m[0] * n[0] + m[1] * n[1] + m[2] * n[2]) / (area * area)
+        m = (e1[1] * x[2] - e1[2] * x[1], e1[2] * x[0] - e1[0] * x[2], e1[0] * x[1] - e1[1] * x[0])
+        gamma = (m[0] * n[0] + m[1] * n[1] + m[2] * n[2]) / (area * area)
+        hit = hits[i]
+        hit.object, hit.face, hit.t = triangles.object[row], row, t
+        uv = triangles.uv[row]
+        hit.u = uv[0, 0] + beta * (uv[1, 0] - uv[0, 0]) + gamma * (uv[2, 0] - uv[0, 0])
+        hit.v = uv[0, 1] + beta * (uv[1, 1] - uv[0, 1]) + gamma * (uv[2, 1] - uv[0, 1])
+        corner = triangles.normals[row]
+        length = 0.0
+        for k in range(3):
+            hit.normal[k] = corner[0, k] + beta * (corner[1, k] - corner[0, k]) + gamma * (corner[2, k] - corner[0, k])
+            length += hit.normal[k] * hit.normal[k]
+        length = math.sqrt(length)
+        away = (hit.normal[0] * d[0] + hit.normal[1] * d[1] + hit.normal[2] * d[2]) * slope <= 0.0
+        for k in range(3):  # a smooth normal that the viewer sees from behind gives way to the triangle's
+            hit.normal[k] = n[k] / area if length == 0.0 or away else hit.normal[k] / length
+
+
+@kernel
+def block(
+    objects: NDArray[np.void], origins: Floats, directions: Floats, far: Floats, own: Ints, blocked: NDArray[np.bool_]
+) -> None:
+    """Mark each ray that meets a shape, meshes and the row `own[i]` of its own object aside, before t = far[i]."""
+    for i in range(len(origins)):
+        if blocked[i] or own[i] < 0:
+            continue
+        for k in range(len(objects)):
+            obj = objects[k]
+            if k == own[i] or obj.shape == MESH:
+                continue
+            s = obj.translation
+            o = local(obj, origins[i, 0] - s[0], origins[i, 1] - s[1], origins[i, 2] - s[2])
+            d = local(obj, directions[i, 0], directions[i, 1], directions[i, 2])
+            t, _ = meet_shape(obj, o, d, far[i])
+            if t < far[i]:
+                blocked[i] = True
+                break
+
+
+@leaf
+def cross(a: tuple[float, float, float], b: tuple[float, float, float]) -> tuple[float, float, float]:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@leaf
+def fill_frame(
+    frame: np.void, p: tuple[float, float, float], a: tuple[float, float, float], b: tuple[float, float, float],
+    n: tuple[float, float, float], origin: Floats,
+) -> None:  # fmt: skip
+    """Complete a frame with dP/dp = a and dP/dq = b at the world point p; b is turned round where n asks for it."""
+    c = cross(a, b)
+    area = math.sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2])
+    if not area > 0.0:  # no coordinates to speak of: any will do, and no groove
+        frame.grooved = 0
+        a = (1.0, 0.0, 0.0) if abs(n[0]) < 0.7 else (0.0, 1.0, 0.0)
+        k = a[0] * n[0] + a[1] * n[1] + a[2] * n[2]
+        a = (a[0] - k * n[0], a[1] - k * n[1], a[2] - k * n[2])
+        b = cross(n, a)
+        c = cross(a, b)
+        area = math.sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2])
+    sigma = math.sqrt(area)
+    for k in range(3):
+        frame.origin[k] = p[k]
+        frame.axes[k, 0], frame.axes[k, 1], frame.axes[k, 2] = a[k], b[k], sigma * n[k]
+    w = (sigma * n[0], sigma * n[1], sigma * n[2])
+    bw, wa, ab = cross(b, w), cross(w, a), cross(a, b)
+    volume = ab[0] * w[0] + ab[1] * w[1] + ab[2] * w[2]
+    for k in range(3):
+        frame.dual[0, k], frame.dual[1, k], frame.dual[2, k] = bw[k] / volume, wa[k] / volume, ab[k] / volume
+    e = (origin[0] - p[0], origin[1] - p[1], origin[2] - p[2])
+    d = frame.dual
+    frame.eye[0] = d[0, 0] * e[0] + d[0, 1] * e[1] + d[0, 2] * e[2] + frame.pq[0]
+    frame.eye[1] = d[1, 0] * e[0] + d[1, 1] * e[1] + d[1, 2] * e[2] + frame.pq[1]
+    frame.eye[2] = d[2, 0] * e[0] + d[2, 1] * e[1] + d[2, 2] * e[2]
+
+
+@kernel
+def frames_at(
+    objects: NDArray[np.void], triangles: Triangles, origin: Floats, directions: Floats, hits: NDArray[np.void],
+    frames: NDArray[np.void],
+) -> None:  # fmt: skip
+    """The tangent frame (n,) FRAME at each hit (n,) of the rays from `origin` along `directions` (n, 3).
+
+    Seen from behind, a surface is bare and turned to the viewer.
+    """
+    for i in range(len(hits)):
+        hit, frame = hits[i], frames[i]
+        obj = objects[hit.object]
+        d = directions[i]
+        p = (origin[0] + hit.t * d[0], origin[1] + hit.t * d[1], origin[2] + hit.t * d[2])
+        n = (hit.normal[0], hit.normal[1], hit.normal[2])
+        frame.object = hit.object
+        frame.grooved = 1 if obj.pattern >= 0 else 0
+        m = obj.mapping
+        frame.pq[0], frame.pq[1] = hit.u * m[0] + m[2], hit.v * m[1] + m[3]
+        a, b = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+        r = obj.rotation
+        if obj.shape == MESH:
+            uv, c = triangles.uv[hit.face], triangles.corners[hit.face]
+            u1, v1, u2, v2 = uv[1, 0] - uv[0, 0], uv[1, 1] - uv[0, 1], uv[2, 0] - uv[0, 0], uv[2, 1] - uv[0, 1]
+            area = u1 * v2 - u2 * v1
+            if area != 0.0:
+                e1 = (c[1, 0] - c[0, 0], c[1, 1] - c[0, 1], c[1, 2] - c[0, 2])
+                e2 = (c[2, 0] - c[0, 0], c[2, 1] - c[0, 1], c[2, 2] - c[0, 2])
+                a = ((v2 * e1[0] - v1 * e2[0]) / area, (v2 * e1[1] - v1 * e2[1]) / area, (v2 * e1[2] - v1 * e2[2]) / area)
+                b = ((u1 * e2[0] - u2 * e1[0]) / area, (u1 * e2[1] - u2 * e1[1]) / area, (u1 * e2[2] - u2 * e1[2]) / area)
+                k = a[0] * n[0] + a[1] * n[1] + a[2] * n[2]  # into the plane of the smooth normal
+                a = (a[0] - k * n[0], a[1] - k * n[1], a[2] - k * n[2])
+                k = b[0] * n[0] + b[1] * n[1] + b[2] * n[2]
+                b = (b[0] - k * n[0], b[1] - k * n[1], b[2] - k * n[2])
+        elif hit.face == 1 and obj.shape == CYLINDER:
+            frame.grooved = 0
+        else:
+            x, y, z = local(obj, p[0] - obj.translation[0], p[1] - obj.translation[1], p[2] - obj.translation[2])
+            if obj.shape == RECTANGLE:
+                lu, lv = (obj.size[0], 0.0, 0.0), (0.0, obj.size[1], 0.0)
+            elif obj.shape == SPHERE:
+                ring = math.sqrt(x * x + y * y)
+                lu = (-2.0 * math.pi * y, 2.0 * math.pi * x, 0.0)
+                lv = (0.0, 0.0, 0.0)
+                if ring > 0.0:
+                    lv = (-math.pi * z * x / ring, -math.pi * z * y / ring, math.pi * ring)
+            else:
+                lu = (-2.0 * math.pi * y, 2.0 * math.pi * x, 0.0)
+                lv = (0.0, 0.0, obj.size[1])
+            a = (
+                r[0, 0] * lu[0] + r[0, 1] * lu[1] + r[0, 2] * lu[2],
+                r[1, 0] * lu[0] + r[1, 1] * lu[1] + r[1, 2] * lu[2],
+                r[2, 0] * lu[0] + r[2, 1] * lu[1] + r[2, 2] * lu[2],
+            )
+            b = (
+                r[0, 0] * lv[0] + r[0, 1] * lv[1] + r[0, 2] * lv[2],
+                r[1, 0] * lv[0] + r[1, 1] * lv[1] + r[1, 2] * lv[2],
+                r[2, 0] * lv[0] + r[2, 1] * lv[1] + r[2, 2] * lv[2],
+            )
+        a = (a[0] / m[0], a[1] / m[0], a[2] / m[0])
+        b = (b[0] / m[1], b[1] / m[1], b[2] / m[1])
+        if n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0:
+            n = (-n[0], -n[1], -n[2])
+            frame.grooved = 0
+        fill_frame(frame, p, a, b, n, origin)

@@ -1,0 +1,527 @@
+"""A ray against the local solid (DESIGN 1.2), by the spans in which each groove adds or removes material (003, 5.3).
+
+A ray is a place on the base plane and a slope: X(w) = (p + w g_p, q + w g_q, w). Its parameter is the height w, so
+that it always runs downwards and spans are intervals of w. Each piece of a path gives, for its body and for the caps
+of `profile` ends, the spans of the ray inside its band, under its added part, above its internal facets. Sorting their
+ends and counting what is open tells where the solid begins.
+
+Straight grooves of a constant or linear scale are exact. On arcs, and under other scales, the ray is followed in
+(s, b) by chords that leave it by at most CHORD of the groove's width.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from renderer.geometry.pieces import locate, point_at, scale_at, tangent_at
+from renderer.geometry.query import Nearby, find
+from renderer.kernel import leaf
+from renderer.tables import CORNER, PROFILE, SCALE_CONSTANT, SCALE_LINEAR, SCALE_SINE, Pattern
+
+CHORD = 1e-4
+CHORDS = 64  # at most this many chords for one crossing of a piece
+THIN = 1e-7  # solid thinner than this part of the pattern's height range is rounding, not matter
+EVENTS = 8192
+
+BAND, ADD, REMOVE = 0, 1, 2
+
+# What a ray met (Meeting.facet), where it is not the number of a facet.
+PLANE = -1  # the base plane
+SIDE = -2  # a wall along the groove that no facet makes
+END = -3  # a wall across the groove: a flat end
+
+BODY, CAP_START, CAP_FINISH = 0, 1, 2
+
+
+class Events(NamedTuple):
+    """Ends of spans along one ray; memory of one thread, used again by each ray."""
+
+    w: NDArray[np.float64]  # (EVENTS,)
+    change: NDArray[np.int32]  # (EVENTS, 5): +1 or -1, BAND, ADD or REMOVE, rank, facet, 3 * place found + part
+    open: NDArray[np.int32]  # (ranks, 3) spans open at the ray's present height
+
+
+class Meeting(NamedTuple):
+    """Where a ray meets the solid."""
+
+    w: float
+    facet: int
+    found: int  # place of the piece in `Nearby`; -1: the plane
+    part: int  # BODY, CAP_START or CAP_FINISH
+
+
+@leaf
+def events(pattern: Pattern) -> Events:
+    ranks = 1
+    for groove in pattern.grooves:
+        ranks = max(ranks, groove.priority + 1)
+    return Events(np.empty(EVENTS), np.empty((EVENTS, 5), np.int32), np.zeros((ranks, 3), np.int32))
+
+
+@leaf
+def put(e: Events, n: int, w: float, sign: int, kind: int, rank: int, facet: int, owner: int) -> int:
+    if n >= EVENTS:
+        return n
+    at = n
+    while at > 0 and e.w[at - 1] < w:  # kept sorted, from high to low
+        e.w[at] = e.w[at - 1]
+        for c in range(5):
+            e.change[at, c] = e.change[at - 1, c]
+        at -= 1
+    e.w[at] = w
+    e.change[at, 0], e.change[at, 1], e.change[at, 2], e.change[at, 3], e.change[at, 4] = sign, kind, rank, facet, owner
+    return n + 1
+
+
+@leaf
+def walk(
+    pattern: Pattern, groove: np.void, e: Events, n: int, owner: int, edge: int,
+    w0: float, b0: float, f0: float, w1: float, b1: float, f1: float,
+) -> int:  # fmt: skip
+    """The events of a ray that falls from height w0 to w1 while its (b, scale) go linearly from (b0, f0) to (b1, f1).
+
+    `edge` says what the wall is where the ray enters or leaves other than along the groove.
+    """
+    profile = pattern.profiles[groove.profile]
+    points = pattern.points
+    first, last = profile.start, profile.start + profile.count - 1
+    rank = groove.priority
+    # where the ray is inside the band, the sides being linear in w
+    enter, leave = 0.0, 1.0
+    enter_facet = leave_facet = edge
+    for side in range(2):
+        limit = profile.left if side == 0 else profile.right
+        sign = 1.0 if side == 0 else -1.0
+        d0, d1 = sign * (b0 - f0 * limit), sign * (b1 - f1 * limit)
+        if d0 < 0.0 and d1 < 0.0:
+            return n
+        if d0 < 0.0:
+            t = d0 / (d0 - d1)
+            if t > enter:
+                enter, enter_facet = t, SIDE
+        elif d1 < 0.0:
+            t = d0 / (d0 - d1)
+            if t < leave:
+                leave, leave_facet = t, SIDE
+    if enter >= leave:
+        return n
+    n = put(e, n, w0 + enter * (w1 - w0), 1, BAND, rank, enter_facet, owner)
+    n = put(e, n, w0 + leave * (w1 - w0), -1, BAND, rank, leave_facet, owner)
+    beta = (b0 + enter * (b1 - b0)) / (f0 + enter * (f1 - f0))
+    beta_end = (b0 + leave * (b1 - b0)) / (f0 + leave * (f1 - f0))
+    step = 1 if beta_end >= beta else -1
+    i = first
+    while i < last - 1 and (points[i + 1, 0] < beta or points[i + 1, 0] == beta and step > 0):
+        i += 1
+    if step < 0:
+        while i > first and points[i, 0] >= beta:
+            i -= 1
+        while i < last - 1 and points[i + 1, 0] < beta:
+            i += 1
+    t = enter
+    adding = removing = False
+    came_by = enter_facet
+    while True:
+        # facet i from t to `until`
+        run = points[i + 1, 0] - points[i, 0]
+        edge_b = points[i + 1, 0] if step > 0 else points[i, 0]
+        d0, d1 = b0 - f0 * edge_b, b1 - f1 * edge_b
+        until = leave
+        if d0 != d1:
+            crossing = d0 / (d0 - d1)
+            if t <= crossing < leave:
+                until = crossing
+            elif crossing < t and step * (beta_end - edge_b) > 0.0:
+                until = t
+        over_last = (i == last - 1) if step > 0 else (i == first)
+        if over_last:
+            until = leave
+        if run > 0.0:
+            slope = (points[i + 1, 1] - points[i, 1]) / run
+            base = points[i, 1] - slope * points[i, 0]
+            # height above the facet is linear along the chord
+            up0 = w0 - f0 * base - slope * b0
+            up1 = w1 - f1 * base - slope * b1
+            ua, ub = up0 + t * (up1 - up0), up0 + until * (up1 - up0)
+            wa = w0 + t * (w1 - w0)
+            inner = profile.inner_first <= i - first < profile.inner_last
+            now_removing = inner and ua > 0.0
+            now_adding = ua < 0.0 and (points[i, 1] > 0.0 or points[i + 1, 1] > 0.0)
+            if now_removing != removing:
+                n = put(e, n, wa, 1 if now_removing else -1, REMOVE, rank, came_by, owner)
+            if now_adding != adding:
+                n = put(e, n, wa, 1 if now_adding else -1, ADD, rank, came_by, owner)
+            removing, adding = now_removing, now_adding
+            if (ua > 0.0) != (ub > 0.0) and ua != ub:
+                cross = w0 + (t + (until - t) * ua / (ua - ub)) * (w1 - w0)
+                if inner:
+                    n = put(e, n, cross, -1 if removing else 1, REMOVE, rank, i - first, owner)
+                    removing = not removing
+                if points[i, 1] > 0.0 or points[i + 1, 1] > 0.0:
+                    n = put(e, n, cross, -1 if adding else 1, ADD, rank, i - first, owner)
+                    adding = not adding
+            came_by = SIDE
+        else:
+            came_by = i - first  # a vertical wall
+        t = max(t, until)
+        if t >= leave or over_last:
+            break
+        i += step
+    if removing:
+        n = put(e, n, w0 + leave * (w1 - w0), -1, REMOVE, rank, leave_facet, owner)
+    if adding:
+        n = put(e, n, w0 + leave * (w1 - w0), -1, ADD, rank, leave_facet, owner)
+    return n
+
+
+@leaf
+def cut(
+    pattern: Pattern, groove: np.void, e: Events, n: int, owner: int,
+    w0: float, s0: float, b0: float, f0: float, w1: float, s1: float, b1: float, f1: float,
+    begin_left: float, begin_right: float, length: float, end_left: float, end_right: float, caps: bool,
+) -> int:  # fmt: skip
+    """`walk`, for the part of the ray's chord between the ends s = begin * b and s = length + end * b.
+
+    The ends' slopes differ to the left (b > 0) and to the right; a cap has the left side alone.
+    """
+    middle = -1.0
+    if (b0 > 0.0) != (b1 > 0.0) and b0 != b1 and (caps or begin_left != begin_right or end_left != end_right):
+        middle = b0 / (b0 - b1)
+    for half in range(2):
+        low, high = 0.0, 1.0
+        if middle >= 0.0:
+            low, high = (0.0, middle) if half == 0 else (middle, 1.0)
+        elif half == 1:
+            break
+        side = b0 + 0.5 * (low + high) * (b1 - b0)
+        if caps and side <= 0.0:
+            continue
+        begin, end = (begin_left, end_left) if side > 0.0 else (begin_right, end_right)
+        for which in range(2):
+            if which == 0:
+                d0, d1 = s0 - begin * b0, s1 - begin * b1
+            else:
+                d0, d1 = length + end * b0 - s0, length + end * b1 - s1
+            at_low, at_high = d0 + low * (d1 - d0), d0 + high * (d1 - d0)
+            if at_low < 0.0 and at_high < 0.0:
+                high = low
+            elif at_low < 0.0:
+                low = min(low + (high - low) * at_low / (at_low - at_high), high)
+            elif at_high < 0.0:
+                high = max(low + (high - low) * at_low / (at_low - at_high), low)
+        if low < high:
+            n = walk(
+                pattern, groove, e, n, owner, END,
+                w0 + low * (w1 - w0), b0 + low * (b1 - b0), f0 + low * (f1 - f0),
+                w0 + high * (w1 - w0), b0 + high * (b1 - b0), f0 + high * (f1 - f0),
+            )  # fmt: skip
+    return n
+
+
+@leaf
+def chords(pattern: Pattern, groove: np.void, piece: np.void, travel: float, closest: float) -> int:
+    """How many chords follow a ray along `travel` pattern units of a piece, `closest` to its centre of curvature."""
+    count = 1.0
+    profile = pattern.profiles[groove.profile]
+    if piece.curvature != 0.0:
+        width = (profile.right - profile.left) * groove.scale_max * piece.size
+        count = max(count, travel / math.sqrt(8.0 * max(closest, CHORD * width) * CHORD * width))
+    if groove.scale_kind != SCALE_CONSTANT:
+        part = (piece.t1 - piece.t0) * min(travel / piece.length, 1.0)
+        if groove.scale_kind == SCALE_LINEAR:
+            count = max(count, 1.0 if piece.curvature == 0.0 else 64.0 * part)
+        elif groove.scale_kind == SCALE_SINE:
+            count = max(count, 48.0 * groove.scale_b * part)
+        else:
+            count = max(count, 4.0 * groove.table_count * part)
+    return int(math.ceil(min(count, CHORDS + 0.0)))
+
+
+@leaf
+def meet_piece(
+    pattern: Pattern, e: Events, n: int, found: int, item: int, dx: float, dy: float,
+    p: float, q: float, gp: float, gq: float, high: float, low: float,
+) -> int:  # fmt: skip
+    """The events of one piece, shifted by (dx, dy), for the ray between the heights `high` and `low`."""
+    piece = pattern.pieces[item]
+    groove = pattern.grooves[piece.groove]
+    profile = pattern.profiles[groove.profile]
+    most = groove.scale_max * piece.size
+    left, right = profile.left * most, profile.right * most
+    x0, y0 = p - dx + high * gp, q - dy + high * gq
+    x1, y1 = p - dx + low * gp, q - dy + low * gq
+    capped = profile.right > 0.0
+    ratio = profile.right / -profile.left if profile.left < 0.0 else 0.0  # right half-width by left
+    begin_left = begin_right = end_left = end_right = 0.0
+    if piece.closed == 0:
+        if piece.start_end == CORNER:
+            begin_left = begin_right = piece.start_mitre
+        elif piece.start_end == PROFILE and capped:
+            begin_left, begin_right = -1.0, ratio
+        if piece.finish_end == CORNER:
+            end_left = end_right = -piece.finish_mitre
+        elif piece.finish_end == PROFILE and capped:
+            end_left, end_right = 1.0, -ratio
+
+    if piece.curvature == 0.0:
+        s0, b0 = locate(piece, x0, y0)
+        s1, b1 = locate(piece, x1, y1)
+        reach = max(abs(left), abs(right))
+        if not (min(b0, b1) > right or max(b0, b1) < left):
+            t0, t1 = 0.0, 1.0
+            if b0 != b1:
+                ta, tb = (left - b0) / (b1 - b0), (right - b0) / (b1 - b0)
+                t0, t1 = max(t0, min(ta, tb)), min(t1, max(ta, tb))
+            if s0 != s1 and groove.scale_kind != SCALE_CONSTANT:
+                # a varying scale is linear between the ends alone
+                count = chords(pattern, groove, piece, abs(s1 - s0) * (t1 - t0), 1.0)
+                if groove.scale_kind == SCALE_LINEAR and (min(s0, s1) < 0.0 or max(s0, s1) > piece.length):
+                    count = CHORDS
+            else:
+                count = 1
+            if t0 < t1:
+                for k in range(count):
+                    a, c = t0 + (t1 - t0) * k / count, t0 + (t1 - t0) * (k + 1) / count
+                    sa, sc = s0 + a * (s1 - s0), s0 + c * (s1 - s0)
+                    fa, _ = scale_at(pattern, groove, piece, sa)
+                    fc, _ = scale_at(pattern, groove, piece, sc)
+                    n = cut(
+                        pattern, groove, e, n, 3 * found + BODY,
+                        high + a * (low - high), sa, b0 + a * (b1 - b0), fa,
+                        high + c * (low - high), sc, b0 + c * (b1 - b0), fc,
+                        begin_left, begin_right, piece.length, end_left, end_right, False,
+                    )  # fmt: skip
+        if piece.closed == 0 and capped:
+            if piece.start_end == PROFILE and min(s0, s1) < 0.0:
+                n = meet_cap(pattern, groove, piece, e, n, found, CAP_START, ratio, -s0, b0, -s1, b1, high, low)
+            if piece.finish_end == PROFILE and max(s0, s1) > piece.length:
+                n = meet_cap(
+                    pattern, groove, piece, e, n, found, CAP_FINISH, ratio,
+                    s0 - piece.length, -b0, s1 - piece.length, -b1, high, low,
+                )  # fmt: skip
+        return n
+
+    # An arc: the ray inside the ring, which it may cross twice.
+    radius = 1.0 / piece.curvature
+    cx, cy = piece.x - piece.ty * radius, piece.y + piece.tx * radius
+    size = abs(radius)
+    outer = size + (-left if radius > 0.0 else right)
+    inner = max(size - (right if radius > 0.0 else -left), 0.0)
+    ax, ay, rx, ry = x0 - cx, y0 - cy, x1 - x0, y1 - y0
+    a, h, c = rx * rx + ry * ry, ax * rx + ay * ry, ax * ax + ay * ay
+    o0, o1, i0, i1 = 0.0, 1.0, 2.0, 2.0
+    if a <= 1e-30 * c:
+        if not inner * inner <= c <= outer * outer:
+            o1 = -1.0
+    else:
+        root = h * h - a * (c - outer * outer)
+        if root <= 0.0:
+            o1 = -1.0
+        else:
+            root = math.sqrt(root)
+            o0, o1 = max((-h - root) / a, 0.0), min((-h + root) / a, 1.0)
+            root = h * h - a * (c - inner * inner)
+            if root > 0.0:
+                root = math.sqrt(root)
+                i0, i1 = (-h - root) / a, (-h + root) / a
+    for crossing in range(2):
+        t0, t1 = o0, o1
+        if i0 <= 1.0:
+            if crossing == 0:
+                t1 = min(o1, i0)
+            else:
+                t0 = max(o0, i1)
+        elif crossing == 1:
+            break
+        if t0 >= t1:
+            continue
+        nearest = min(max(-h / a, t0), t1) if a > 0.0 else t0
+        closest = math.hypot(ax + nearest * rx, ay + nearest * ry)
+        count = chords(pattern, groove, piece, math.sqrt(a) * (t1 - t0), closest)
+        s0, b0 = locate(piece, x0 + t0 * rx, y0 + t0 * ry)
+        f0, _ = scale_at(pattern, groove, piece, s0)
+        w0 = high + t0 * (low - high)
+        for k in range(count):
+            t = t0 + (t1 - t0) * (k + 1) / count
+            s1, b1 = locate(piece, x0 + t * rx, y0 + t * ry)
+            f1, _ = scale_at(pattern, groove, piece, s1)
+            w1 = high + t * (low - high)
+            if piece.closed == 1:
+                n = walk(pattern, groove, e, n, 3 * found + BODY, SIDE, w0, b0, f0, w1, b1, f1)
+            elif abs(s1 - s0) <= math.pi * size:  # not across the far side, where s starts again
+                n = cut(
+                    pattern, groove, e, n, 3 * found + BODY, w0, s0, b0, f0, w1, s1, b1, f1,
+                    begin_left, begin_right, piece.length, end_left, end_right, False,
+                )  # fmt: skip
+            s0, b0, f0, w0 = s1, b1, f1, w1
+    if piece.closed == 0 and capped:
+        for end in range(2):
+            if (piece.start_end if end == 0 else piece.finish_end) != PROFILE:
+                continue
+            s = 0.0 if end == 0 else piece.length
+            tx, ty = tangent_at(piece, s)
+            ex, ey = point_at(piece, s)
+            out = -1.0 if end == 0 else 1.0
+            n = meet_cap(
+                pattern, groove, piece, e, n, found, CAP_START if end == 0 else CAP_FINISH, ratio,
+                out * ((x0 - ex) * tx + (y0 - ey) * ty), -out * ((y0 - ey) * tx - (x0 - ex) * ty),
+                out * ((x1 - ex) * tx + (y1 - ey) * ty), -out * ((y1 - ey) * tx - (x1 - ex) * ty),
+                high, low,
+            )  # fmt: skip
+    return n
+
+
+@leaf
+def meet_cap(
+    pattern: Pattern, groove: np.void, piece: np.void, e: Events, n: int, found: int, part: int, ratio: float,
+    b0: float, s0: float, b1: float, s1: float, high: float, low: float,
+) -> int:  # fmt: skip
+    """The events of the cap of a `profile` end: the profile's right half along a line square to the path.
+
+    b is the distance past the end, s runs to the right of someone who leaves the path there.
+    """
+    f, _ = scale_at(pattern, groove, piece, 0.0 if part == CAP_START else piece.length)
+    profile = pattern.profiles[groove.profile]
+    left = -profile.left / profile.right if profile.left < 0.0 else 0.0
+    if max(b0, b1) < 0.0 or min(b0, b1) > f * profile.right:
+        return n
+    # leaving by the finish, s > 0 is the path's right side; by the start, its left side
+    begin, end = (-1.0, left) if part == CAP_FINISH else (-left, 1.0)
+    return cut(
+        pattern, groove, e, n, 3 * found + part, high, s0, b0, f, low, s1, b1, f, begin, begin, 0.0, end, end, True
+    )
+
+
+@leaf
+def is_solid(e: Events, below: bool) -> bool:
+    """Whether the ray is inside the solid, from what is open: the highest priority whose band holds it decides."""
+    for rank in range(len(e.open) - 1, -1, -1):
+        if e.open[rank, BAND] > 0:
+            return (below or e.open[rank, ADD] > 0) and e.open[rank, REMOVE] == 0
+    return below
+
+
+@leaf
+def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[float, int, int]:
+    """The height at which the ray enters the solid on its way down, the facet and its owner; -inf: nowhere."""
+    for rank in range(len(e.open)):
+        e.open[rank, 0] = e.open[rank, 1] = e.open[rank, 2] = 0
+    below = high <= 0.0
+    k = 0
+    if below and n == 0:
+        return high, PLANE, -1
+    while k < n or not below:
+        at = e.w[k] if k < n else -math.inf
+        facet, owner = PLANE, -1
+        if not below and at <= 0.0:
+            at = 0.0
+        if at < low:
+            break
+        if not below and at <= thin:
+            below = True
+        until = at - thin
+        while k < n and e.w[k] >= until:
+            sign, kind, rank = e.change[k, 0], e.change[k, 1], e.change[k, 2]
+            e.open[rank, kind] += sign
+            if not (kind == REMOVE and sign > 0) and (facet < 0 or e.change[k, 3] >= 0):
+                facet, owner = e.change[k, 3], e.change[k, 4]
+            k += 1
+        if is_solid(e, below) and (k >= n or e.w[k] < until):
+            return at, facet, owner
+    return -math.inf, PLANE, -1
+
+
+@leaf
+def meet(
+    pattern: Pattern, found: Nearby, e: Events, count: int, p: float, q: float, gp: float, gq: float,
+    high: float, low: float, capacity: int, upwards: bool,
+) -> Meeting:  # fmt: skip
+    """Where the ray through (p, q) with slope (gp, gq) first enters the solid between the heights `high` and `low`.
+
+    `count` pieces have been found for the whole footprint; where -1, the ray looks for them itself, stretch by
+    stretch: from above, or from below for a shadow, which asks only whether there is anything. w = -inf: nothing.
+    """
+    thin = THIN * (pattern.height + pattern.depth)
+    stretches = 1
+    if count < 0:
+        travel = math.hypot(gp, gq) * (high - low)
+        stride = 2.0 * max(pattern.grid.cell[0], pattern.grid.cell[1]) + pattern.reach
+        stretches = int(min(max(math.ceil(travel / stride), 1.0), 1e6))
+    for k in range(stretches):
+        j = stretches - 1 - k if upwards else k
+        a = high + (low - high) * j / stretches
+        c = high + (low - high) * (j + 1) / stretches
+        pieces = count
+        if count < 0:
+            margin = pattern.reach
+            pa, pc, qa, qc = p + a * gp, p + c * gp, q + a * gq, q + c * gq
+            pieces = find(
+                pattern, found, min(pa, pc) - margin, min(qa, qc) - margin,
+                max(pa, pc) + margin, max(qa, qc) + margin, capacity,
+            )  # fmt: skip
+            if pieces < 0:
+                pieces = capacity
+        n = 0
+        for i in range(pieces):
+            n = meet_piece(
+                pattern, e, n, i, found.piece[i], found.shift[i, 0], found.shift[i, 1], p, q, gp, gq, a, c
+            )
+        w, facet, owner = first(e, n, a, c, thin)
+        if w > -math.inf:
+            return Meeting(w, facet, owner // 3 if owner >= 0 else -1, owner % 3 if owner >= 0 else 0)
+    return Meeting(-math.inf, PLANE, -1, 0)
+
+
+@leaf
+def normal_of(
+    pattern: Pattern, found: Nearby, m: Meeting, x: float, y: float, gp: float, gq: float
+) -> tuple[float, float, float]:
+    """The pattern-space normal (any length) of what the ray met at (x, y), on the side that the ray came from."""
+    if m.found < 0:
+        return 0.0, 0.0, 1.0
+    piece = pattern.pieces[found.piece[m.found]]
+    groove = pattern.grooves[piece.groove]
+    profile = pattern.profiles[groove.profile]
+    px, py = x - found.shift[m.found, 0], y - found.shift[m.found, 1]
+    s, b = locate(piece, px, py)
+    bend = 1.0
+    if m.part == BODY:
+        # past the ends of an arc the circle goes on
+        tx, ty = tangent_at(piece, s)
+        f, slope = scale_at(pattern, groove, piece, s)
+        bend = 1.0 - piece.curvature * b
+    else:
+        s = 0.0 if m.part == CAP_START else piece.length
+        ux, uy = tangent_at(piece, s)
+        if m.part == CAP_START:
+            ux, uy = -ux, -uy
+        tx, ty = uy, -ux
+        f, slope = scale_at(pattern, groove, piece, s)
+        slope = 0.0
+    bx, by = -ty, tx
+    along = across = up = 0.0
+    if m.facet >= 0:
+        i = profile.start + m.facet
+        run = pattern.points[i + 1, 0] - pattern.points[i, 0]
+        rise = pattern.points[i + 1, 1] - pattern.points[i, 1]
+        if run > 0.0:
+            across, up = -rise / run, 1.0
+            along = -slope * (pattern.points[i, 1] + across * pattern.points[i, 0])
+        else:
+            across, along = 1.0, -slope * pattern.points[i, 0]
+    elif m.facet == SIDE:
+        across = 1.0
+    elif m.facet == END:
+        along = 1.0
+    else:
+        up = 1.0
+    if abs(bend) > 1e-9:
+        along /= bend
+    n0, n1 = along * tx + across * bx, along * ty + across * by
+    if n0 * gp + n1 * gq + up < 0.0:
+        return -n0, -n1, -up
+    return n0, n1, up

@@ -1,0 +1,79 @@
+"""A footprint as its method sees it: the screen's square joined with the pattern plane by one projective map.
+
+With the eye at D and a ray's direction v in pattern space, the ray meets the base plane in (D_p v_w - D_w v_p,
+D_q v_w - D_w v_q) / v_w. A ray's direction is linear in the place (u, v) in the square, and so are both numerators
+and the denominator: exact under perspective, with no matrix to invert (DESIGN 2.1).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from renderer.kernel import leaf
+from renderer.shading import direction_to_pattern
+from renderer.tables import Camera
+
+
+class View(NamedTuple):
+    """p = (pu u + pv v + p1) / (wu u + wv v + w1), q likewise, for (u, v) in [0, 1]^2; the denominator is negative."""
+
+    pu: float
+    pv: float
+    p1: float
+    qu: float
+    qv: float
+    q1: float
+    wu: float
+    wv: float
+    w1: float
+    p: float  # the centre's point on the base plane
+    q: float
+    ex: float  # unit world vector from the surface to the eye, at the centre
+    ey: float
+    ez: float
+
+
+GRAZING = 0.2
+"""A corner whose ray meets the plane at less than this part of the centre's slope is near the plane's horizon: the
+map is then replaced by its tangent at the centre. It happens on curved objects alone, at their silhouettes."""
+
+
+@leaf
+def view_of(footprint: np.void, frame: np.void, camera: Camera) -> View:
+    """The projective map of a footprint."""
+    size = footprint.size
+    x, y = footprint.x, footprint.y
+    c, r, d = camera.corner, camera.right, camera.down
+    w0 = (c[0] + x * r[0] + y * d[0], c[1] + x * r[1] + y * d[1], c[2] + x * r[2] + y * d[2])
+    v0 = direction_to_pattern(frame, w0)
+    vu = direction_to_pattern(frame, (size * r[0], size * r[1], size * r[2]))
+    vv = direction_to_pattern(frame, (size * d[0], size * d[1], size * d[2]))
+    dp, dq, dw = frame.eye[0], frame.eye[1], frame.eye[2]
+    pu, pv, p1 = dp * vu[2] - dw * vu[0], dp * vv[2] - dw * vv[0], dp * v0[2] - dw * v0[0]
+    qu, qv, q1 = dq * vu[2] - dw * vu[1], dq * vv[2] - dw * vv[1], dq * v0[2] - dw * v0[1]
+    wu, wv, w1 = vu[2], vv[2], v0[2]
+    middle = w1 + 0.5 * (wu + wv)
+    p = (p1 + 0.5 * (pu + pv)) / middle
+    q = (q1 + 0.5 * (qu + qv)) / middle
+    least = w1 + max(wu, 0.0) + max(wv, 0.0)  # the corner nearest to the horizon
+    if least > GRAZING * middle:
+        pu, pv = (pu - p * wu) / middle, (pv - p * wv) / middle
+        qu, qv = (qu - q * wu) / middle, (qv - q * wv) / middle
+        p1, q1 = p - 0.5 * (pu + pv), q - 0.5 * (qu + qv)
+        pu, pv, p1, qu, qv, q1 = -pu, -pv, -p1, -qu, -qv, -q1
+        wu, wv, w1 = 0.0, 0.0, -1.0
+    ex = -(w0[0] + 0.5 * size * (r[0] + d[0]))
+    ey = -(w0[1] + 0.5 * size * (r[1] + d[1]))
+    ez = -(w0[2] + 0.5 * size * (r[2] + d[2]))
+    length = math.sqrt(ex * ex + ey * ey + ez * ez)
+    return View(pu, pv, p1, qu, qv, q1, wu, wv, w1, p, q, ex / length, ey / length, ez / length)
+
+
+@leaf
+def on_plane(view: View, u: float, v: float) -> tuple[float, float]:
+    """The point of the base plane that (u, v) shows."""
+    w = view.wu * u + view.wv * v + view.w1
+    return (view.pu * u + view.pv * v + view.p1) / w, (view.qu * u + view.qv * v + view.q1) / w

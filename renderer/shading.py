@@ -1,0 +1,199 @@
+"""How a facet answers to light: glTF 2.0's materials (appendix B), direct light and a constant sky.
+
+Parts of a footprint are shaded where they are found, so this is a leaf that the methods call and not a stage with
+buffers of its own. All vectors are unit vectors in world space; E points to the viewer, L to the light.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from renderer.kernel import kernel, leaf
+from renderer.tables import DIRECTIONAL
+
+Vector = tuple[float, float, float]
+
+
+@leaf
+def dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@leaf
+def unit(a: Vector) -> Vector:
+    length = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+    return (a[0] / length, a[1] / length, a[2] / length) if length > 0.0 else (0.0, 0.0, 1.0)
+
+
+@leaf
+def normal_to_world(frame: np.void, n: Vector) -> Vector:
+    """A normal of pattern space (a covector) in the world: by the inverse transpose of the frame's axes."""
+    d = frame.dual
+    return unit(
+        (
+            n[0] * d[0, 0] + n[1] * d[1, 0] + n[2] * d[2, 0],
+            n[0] * d[0, 1] + n[1] * d[1, 1] + n[2] * d[2, 1],
+            n[0] * d[0, 2] + n[1] * d[1, 2] + n[2] * d[2, 2],
+        )
+    )
+
+
+@leaf
+def to_world(frame: np.void, p: float, q: float, w: float) -> Vector:
+    """A point of pattern space in the world."""
+    a, dp, dq = frame.axes, p - frame.pq[0], q - frame.pq[1]
+    return (
+        frame.origin[0] + a[0, 0] * dp + a[0, 1] * dq + a[0, 2] * w,
+        frame.origin[1] + a[1, 0] * dp + a[1, 1] * dq + a[1, 2] * w,
+        frame.origin[2] + a[2, 0] * dp + a[2, 1] * dq + a[2, 2] * w,
+    )
+
+
+@leaf
+def direction_to_pattern(frame: np.void, v: Vector) -> Vector:
+    """A world vector in pattern space."""
+    d = frame.dual
+    return (
+        d[0, 0] * v[0] + d[0, 1] * v[1] + d[0, 2] * v[2],
+        d[1, 0] * v[0] + d[1, 1] * v[1] + d[1, 2] * v[2],
+        d[2, 0] * v[0] + d[2, 1] * v[1] + d[2, 2] * v[2],
+    )
+
+
+@leaf
+def light_to_pattern(frame: np.void, light: np.void) -> tuple[float, float, float, float]:
+    """The light as a homogeneous point (D_p, D_q, D_w, h) of pattern space: h = 1 a point, h = 0 a direction."""
+    v = light.vector
+    if light.kind == DIRECTIONAL:
+        d = direction_to_pattern(frame, (v[0], v[1], v[2]))
+        return d[0], d[1], d[2], 0.0
+    o = frame.origin
+    d = direction_to_pattern(frame, (v[0] - o[0], v[1] - o[1], v[2] - o[2]))
+    return d[0] + frame.pq[0], d[1] + frame.pq[1], d[2], 1.0
+
+
+@leaf
+def reflect(material: np.void, n: Vector, e: Vector, to_light: Vector) -> Vector:
+    """BRDF times the cosine to the light, RGB: GGX with Smith's height-correlated masking over Lambert.
+
+    The dielectric is mixed of both by Schlick's Fresnel term, the metal is GGX with its base colour as reflectance.
+    An ideal mirror (alpha 0) has no answer to a light without extent, but its diffuse part has.
+    """
+    nl, ne = dot(n, to_light), dot(n, e)
+    if nl <= 0.0 or ne <= 0.0:
+        return 0.0, 0.0, 0.0
+    base = material.base_color
+    diffuse = (1.0 - material.metallic) * (1.0 - material.transmission) * nl / math.pi
+    if material.metallic == 0.0 and material.f90 == 0.0:
+        return diffuse * base[0], diffuse * base[1], diffuse * base[2]
+    h = unit((to_light[0] + e[0], to_light[1] + e[1], to_light[2] + e[2]))
+    nh, eh = dot(n, h), min(max(dot(e, h), 0.0), 1.0)
+    schlick = (1.0 - eh) ** 5
+    fresnel = material.f0 + (material.f90 - material.f0) * schlick
+    gloss = 0.0
+    if material.alpha > 0.0:
+        a2 = material.alpha * material.alpha
+        t = nh * nh * (a2 - 1.0) + 1.0
+        smith = nl * math.sqrt(ne * ne * (1.0 - a2) + a2) + ne * math.sqrt(nl * nl * (1.0 - a2) + a2)
+        gloss = a2 / (math.pi * t * t) * 0.5 / smith * nl
+    diffuse *= 1.0 - fresnel
+    dielectric = (1.0 - material.metallic) * fresnel * gloss
+    metal = material.metallic * gloss
+    return (
+        diffuse * base[0] + dielectric + metal * (base[0] + (1.0 - base[0]) * schlick),
+        diffuse * base[1] + dielectric + metal * (base[1] + (1.0 - base[1]) * schlick),
+        diffuse * base[2] + dielectric + metal * (base[2] + (1.0 - base[2]) * schlick),
+    )
+
+
+@leaf
+def lit_by(light: np.void, material: np.void, n: Vector, e: Vector, at: Vector) -> Vector:
+    """Radiance to E that one unblocked light causes at the world point `at`."""
+    v = light.vector
+    if light.kind == DIRECTIONAL:
+        r = reflect(material, n, e, (v[0], v[1], v[2]))
+        return r[0] * light.color[0], r[1] * light.color[1], r[2] * light.color[2]
+    d = (v[0] - at[0], v[1] - at[1], v[2] - at[2])
+    square = dot(d, d)
+    if square <= 0.0:
+        return 0.0, 0.0, 0.0
+    r = reflect(material, n, e, unit(d))
+    return r[0] * light.color[0] / square, r[1] * light.color[1] / square, r[2] * light.color[2] / square
+
+
+@leaf
+def ambient(material: np.void, sky: NDArray[np.float64], albedo: NDArray[np.float64], n: Vector, e: Vector) -> Vector:
+    """Radiance to E under the constant sky, unoccluded, and the material's own light.
+
+    `albedo` is the table of `gloss_albedo`.
+    """
+    glow, base = material.emissive, material.base_color
+    if sky[0] == 0.0 and sky[1] == 0.0 and sky[2] == 0.0:
+        return glow[0], glow[1], glow[2]
+    diffuse = (1.0 - material.metallic) * (1.0 - material.transmission)
+    if material.metallic == 0.0 and material.f90 == 0.0:
+        return (
+            glow[0] + diffuse * base[0] * sky[0],
+            glow[1] + diffuse * base[1] * sky[1],
+            glow[2] + diffuse * base[2] * sky[2],
+        )
+    plain = grazing = 0.0
+    if material.alpha > 0.0:
+        last = albedo.shape[0] - 1
+        x = min(max(dot(n, e), 0.0), 1.0) * last
+        y = math.sqrt(material.alpha) * last
+        i, j = min(int(x), last - 1), min(int(y), last - 1)
+        x -= i
+        y -= j
+        for k in range(2):
+            value = (
+                (1.0 - x) * ((1.0 - y) * albedo[i, j, k] + y * albedo[i, j + 1, k])
+                + x * ((1.0 - y) * albedo[i + 1, j, k] + y * albedo[i + 1, j + 1, k])
+            )  # fmt: skip
+            if k == 0:
+                plain = value
+            else:
+                grazing = value
+    dielectric = material.f0 * plain + (material.f90 - material.f0) * grazing
+    # what the coat sends back does not reach the body; the Fresnel term's mean over the sky stands for it
+    diffuse *= 1.0 - dielectric
+    dielectric *= 1.0 - material.metallic
+    m = material.metallic
+    return (
+        glow[0] + sky[0] * (diffuse * base[0] + dielectric + m * (base[0] * plain + (1.0 - base[0]) * grazing)),
+        glow[1] + sky[1] * (diffuse * base[1] + dielectric + m * (base[1] * plain + (1.0 - base[1]) * grazing)),
+        glow[2] + sky[2] * (diffuse * base[2] + dielectric + m * (base[2] * plain + (1.0 - base[2]) * grazing)),
+    )
+
+
+@kernel
+def gloss_albedo(size: int, samples: int) -> NDArray[np.float64]:
+    """Share of a uniform sky that GGX sends to E, without Fresnel and weighted with Schlick's (1 - E.H)^5.
+
+    Shape (size, size, 2); rows the cosine to E from 0 to 1, columns the roughness from 0 to 1. Midpoints of
+    `samples` by `samples` half vectors drawn as GGX distributes them: the estimator then is 2 G2/G1-like and smooth.
+    """
+    table = np.zeros((size, size, 2))
+    for i in range(size):
+        ne = max(i / (size - 1.0), 1e-3)
+        se = math.sqrt(1.0 - ne * ne)
+        for j in range(size):
+            alpha = max((j / (size - 1.0)) ** 2, 1e-4)
+            a2 = alpha * alpha
+            for k in range(samples):
+                r = (k + 0.5) / samples
+                nh2 = (1.0 - r) / (1.0 + (a2 - 1.0) * r)
+                nh, sh = math.sqrt(nh2), math.sqrt(max(1.0 - nh2, 0.0))
+                for m in range(samples):
+                    eh = se * sh * math.cos(math.pi * (m + 0.5) / samples) + ne * nh
+                    nl = 2.0 * eh * nh - ne
+                    if eh <= 0.0 or nl <= 0.0:
+                        continue
+                    smith = nl * math.sqrt(ne * ne * (1.0 - a2) + a2) + ne * math.sqrt(nl * nl * (1.0 - a2) + a2)
+                    weight = 2.0 * nl * eh / (smith * nh) / (samples * samples)
+                    table[i, j, 0] += weight
+                    table[i, j, 1] += weight * (1.0 - eh) ** 5
+    return table
