@@ -113,7 +113,15 @@ def checked_pattern(text: bytes) -> tuple[schema.Pattern, list[Finding]]:
     )
     if report.scene is None or report.problems:
         raise scene_error(_relative(findings(report.problems)))
-    return report.scene.patterns[_NAME], _relative(findings(report.warnings))
+    found = report.scene.patterns[_NAME]
+    worldly = [
+        schema.Problem(f"/grooves/{index}/path/space", '"pattern": without an object there is no world', '"world"')
+        for index, groove in enumerate(found.grooves)
+        if groove.path.type == "polyline" and groove.path.space == "world"
+    ]
+    if worldly:
+        raise scene_error(worldly)
+    return found, _relative(findings(report.warnings))
 
 
 def compiled(
@@ -122,26 +130,20 @@ def compiled(
     """Compiles a pattern into the cache, or finds it there, and tells what came of it."""
     start = time.perf_counter()
     try:
-        tables = patterns.pattern(pattern)
+        found = patterns.pattern(pattern)
     except RenderError as error:
         raise scene_error(_relative(findings(error.faults))) from None
     seconds = time.perf_counter() - start
+    columns, rows = found.tables.grid.shape
     return CompiledPattern(
         id=hashlib.sha256(pattern.model_dump_json().encode()).hexdigest()[:32],
         grooves=len(pattern.grooves),
-        pieces=len(tables.pieces),
-        bytes=_bytes(tables),
-        grid=(int(tables.grid.shape[0]), int(tables.grid.shape[1])),
+        pieces=len(found.tables.pieces),
+        bytes=found.bytes,
+        grid=(int(columns), int(rows)),
         seconds=seconds,
         warnings=warnings,
     )
-
-
-def _bytes(table: object) -> int:
-    """The size of all arrays in a tuple of tables."""
-    if isinstance(table, tuple):
-        return sum(_bytes(part) for part in table)
-    return int(getattr(table, "nbytes", 0))
 
 
 def _relative(listed: Sequence[Finding]) -> list[Finding]:

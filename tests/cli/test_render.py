@@ -71,8 +71,8 @@ def test_picture(intaglio: Command, scene_file: Path, suffix: str) -> None:
         assert np.isfinite(picture).all()
         assert picture.max() > 0
     elif suffix == ".png":
-        image = Image.open(out)
-        assert (image.size, image.mode) == ((16, 12), "RGB")
+        with Image.open(out) as image:
+            assert (image.size, image.mode) == ((16, 12), "RGB")
     else:
         assert out.read_bytes().startswith(b"\x76\x2f\x31\x01")
     assert sorted(os.listdir(out.parent)) == sorted([out.name, "scene.json"])
@@ -86,7 +86,8 @@ def test_options(intaglio: Command, scene_file: Path) -> None:
     folder = scene_file.parent
     assert np.load(folder / "out.npy").shape == (10, 20, 3)
     assert np.load(folder / "method.npy").shape[:2] == (10, 20)
-    assert Image.open(folder / "method.png").size == (20, 10)
+    with Image.open(folder / "method.png") as image:
+        assert image.size == (20, 10)
     told = json.loads(done.stdout)
     assert told["resolution"] == [20, 10]
     assert told["kernel_seconds"] >= 0
@@ -164,7 +165,8 @@ def test_stopping_leaves_the_old_picture(scene_file: Path) -> None:
     (scene_file.parent / "out.png").write_bytes(b"old")
     process = start_slow(scene_file.parent)
     process.send_signal(signal.SIGINT)
-    assert process.wait(30) == 130
+    process.communicate(timeout=30)
+    assert process.returncode == 130
     assert (scene_file.parent / "out.png").read_bytes() == b"old"
 
 
@@ -183,5 +185,6 @@ def test_progress_bar_on_a_terminal(scene_file: Path) -> None:
     while b"rendering" not in seen:
         seen += os.read(ours, 1000)
     process.send_signal(signal.SIGINT)
-    assert process.wait(30) == 130
+    process.communicate(timeout=30)
+    assert process.returncode == 130
     os.close(ours)

@@ -212,6 +212,12 @@ def test_wrong_pattern_has_pointers_of_its_own(client: TestClient, scene: dict[s
     assert_problem(client.post("/api/patterns", json=pattern), 422, "/grooves/0/profile/width")
 
 
+def test_pattern_in_world_space_needs_an_object(client: TestClient, scene: dict[str, Any]) -> None:
+    pattern = scene["patterns"]["tiles"]
+    pattern["grooves"][0]["path"] = {"type": "polyline", "space": "world", "points": [[0, 0, 0], [1, 0, 0]]}
+    assert_problem(client.post("/api/patterns", json=pattern), 422, "/grooves/0/path/space")
+
+
 def test_pattern_and_render_share_a_cache(client: TestClient, scene: dict[str, Any]) -> None:
     cache = client.app.state.shop.patterns  # type: ignore[attr-defined]
     client.post("/api/patterns", json=scene["patterns"]["tiles"])
