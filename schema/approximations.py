@@ -65,13 +65,11 @@ def _sharp_corner(place: Place, path: PolylinePath) -> Iterator[Problem]:
 
 
 def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:
-    first = [q - p for p, q in zip(a, b, strict=True)]
-    second = [q - p for p, q in zip(b, c, strict=True)]
-    length = math.hypot(*first) * math.hypot(*second)
-    if length == 0:
-        return 0.0
-    cosine = sum(p * q for p, q in zip(first, second, strict=True)) / length
-    return math.acos(max(-1.0, min(1.0, cosine)))
+    """The angle between a to b and b to c; 0 for those under a right angle, to be quick where there are many."""
+    along = (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1])
+    if len(a) == 3:
+        along += (b[2] - a[2]) * (c[2] - b[2])
+    return math.acos(max(-1.0, along / (math.dist(a, b) * math.dist(b, c)))) if along < 0 else 0.0
 
 
 def left_out(scene: Scene) -> Iterator[Problem]:

@@ -1,15 +1,27 @@
 """What all models share: strictness, bounds, and checks of meaning that keep their place in the file."""
 
 from collections.abc import Iterator
-from typing import Annotated, NamedTuple, Self
+from dataclasses import dataclass
+from typing import Annotated, Any, NamedTuple, Self
 
-from pydantic import BaseModel, ConfigDict, Field, Strict, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ModelWrapValidatorHandler,
+    Strict,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 MAX_COORDINATE = 1e6
 MIN_LENGTH = 1e-9
 MAX_LENGTH = 1e6
 MAX_POINTS = 100_000
+MAX_ENTRIES = 1000
+MAX_INNER = 16  # an array in an array is a point
 MAX_SEED = 2**32 - 1
 
 Coordinate = Annotated[float, Field(ge=-MAX_COORDINATE, le=MAX_COORDINATE)]
@@ -43,6 +55,45 @@ class Fault(NamedTuple):
     found: str
 
 
+class TooManyErrors(Exception):
+    """Stops a validation. No ValueError, which pydantic would collect as one error more."""
+
+
+@dataclass(slots=True)
+class ErrorBudget:
+    """The validation's context: a file of rubbish must not cost gigabytes of error details."""
+
+    left: int
+
+    def spend(self, count: int) -> None:
+        """Counts errors; about, as each record that holds the record counts them again."""
+        self.left -= count
+        if self.left < 0:
+            raise TooManyErrors
+
+
+def _failed(faults: tuple[Fault, ...]) -> PydanticCustomError:
+    text = "; ".join(f"expected {fault.expected}, found {fault.found}" for fault in faults)
+    return PydanticCustomError("meaning", "{text}", {"text": text, "faults": faults})
+
+
+def _oversized(data: dict[Any, Any]) -> Iterator[Fault]:
+    """Arrays far beyond what any field takes. Pydantic would look at every item before it tells of the length."""
+    if len(data) > MAX_ENTRIES:
+        yield Fault((), f"an object of at most {MAX_ENTRIES} keys", f"{len(data)}")
+    for key, value in data.items():
+        if isinstance(value, dict) and len(value) > MAX_ENTRIES:
+            yield Fault((key,), f"an object of at most {MAX_ENTRIES} keys", f"{len(value)}")
+        if not isinstance(value, list | tuple):
+            continue
+        if len(value) > MAX_POINTS:
+            yield Fault((key,), f"an array of at most {MAX_POINTS}", f"{len(value)}")
+            continue
+        for index, item in enumerate(value):
+            if isinstance(item, list) and len(item) > MAX_INNER:
+                yield Fault((key, index), f"an array of at most {MAX_INNER}", f"{len(item)}")
+
+
 class Model(BaseModel):
     """A strict, closed, immutable record. NaN and infinities are refused everywhere."""
 
@@ -52,10 +103,20 @@ class Model(BaseModel):
         """What is wrong with the record though every field has the right type and is in bounds."""
         return iter(())
 
-    @model_validator(mode="after")
-    def _means_something(self) -> Self:
-        faults = tuple(self.faults())
+    @model_validator(mode="wrap")
+    @classmethod
+    def _checked(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
+        if isinstance(data, dict):
+            oversized = tuple(_oversized(data))
+            if oversized:
+                raise _failed(oversized)
+        try:
+            record = handler(data)
+        except ValidationError as error:
+            if isinstance(info.context, ErrorBudget):
+                info.context.spend(error.error_count())
+            raise
+        faults = tuple(record.faults())
         if faults:
-            text = "; ".join(f"expected {fault.expected}, found {fault.found}" for fault in faults)
-            raise PydanticCustomError("meaning", "{text}", {"text": text, "faults": faults})
-        return self
+            raise _failed(faults)
+        return record

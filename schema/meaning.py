@@ -16,9 +16,10 @@ MAX_LISTED = 10
 def unresolved_names(data: Any) -> Iterator[Problem]:
     """Names of materials and patterns that the scene does not have. Reads raw data: half a scene will do."""
     top = entries(data)
-    has_materials = isinstance(top.get("materials"), dict)
-    has_patterns = isinstance(top.get("patterns", {}), dict)
     materials, patterns = entries(top.get("materials")), entries(top.get("patterns"))
+    # Where the names themselves are unreadable, that is the problem.
+    has_materials = materials is top.get("materials")
+    has_patterns = patterns is top.get("patterns") or "patterns" not in top
     for index, item in enumerate(items(top.get("objects"))):
         if has_materials:
             yield from _unresolved(("objects", index, "material"), entries(item).get("material"), "material", materials)

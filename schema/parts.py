@@ -6,8 +6,8 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from .base import Model
-from .patterns import Groove
+from .base import MAX_ENTRIES, Model
+from .patterns import MAX_GROOVES, Groove
 from .scene import Camera, Object, Scene
 
 Place = tuple[str | int, ...]
@@ -64,10 +64,10 @@ def parsed(model: type[M], raw: Any) -> M | None:
 
 
 def entries(raw: Any) -> dict[str, Any]:
-    """An object's entries; none of anything else."""
-    return raw if isinstance(raw, dict) else {}
+    """An object's entries; none of anything else, nor of an object that is refused for its size."""
+    return raw if isinstance(raw, dict) and len(raw) <= MAX_ENTRIES else {}
 
 
 def items(raw: Any) -> list[Any]:
-    """An array's items; none of anything else."""
-    return raw if isinstance(raw, list) else []
+    """An array's items; none of anything else, nor of an array that is refused for its size."""
+    return raw if isinstance(raw, list) and len(raw) <= MAX_GROOVES else []

@@ -60,7 +60,7 @@ class Groove(Model):
         if isinstance(self.repeat, ConcentricRepeat):
             if not isinstance(self.path, CirclePath):
                 yield Fault(
-                    ("repeat", "type"), "a repeat other than concentric, as the path is no circle", "concentric"
+                    ("repeat", "type"), "a repeat other than concentric, as the path is no circle", '"concentric"'
                 )
                 return
             last = self.path.radius + (self.repeat.count - 1) * self.repeat.step

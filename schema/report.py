@@ -9,14 +9,10 @@ from .errors import Problem, pointer, shown
 from .words import described, keys, locate, resolved, tags
 
 NOTHING = "nothing"
-MAX_ERRORS = 100_000  # their details would take gigabytes
 
 
 def problems_of(error: ValidationError) -> Iterator[Problem]:
-    """Every problem that an error of validation tells of, where they can be told at all."""
-    if error.error_count() > MAX_ERRORS:
-        yield Problem("", f"a scene with at most {MAX_ERRORS} problems", f"{error.error_count()} of them")
-        return
+    """Every problem that an error of validation tells of."""
     for detail in error.errors(include_url=False):
         yield from _problems(detail["type"], detail["loc"], detail["input"], detail.get("ctx", {}))
 

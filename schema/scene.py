@@ -6,14 +6,13 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from .base import MIN_LENGTH, Array, Degrees3, Fault, Model, Name, Point2, Point3, Seed
+from .base import MAX_ENTRIES, MIN_LENGTH, Array, Degrees3, Fault, Model, Name, Point2, Point3, Seed
 from .lights import Light
 from .materials import Material
 from .patterns import Pattern
 from .shapes import Shape
 
 MAX_PIXELS = 33_554_432
-MAX_ENTRIES = 1000
 # The sine of the least angle between the view and `up`, below which `up` no longer tells which way the image stands.
 MIN_UP_SINE = 1e-6
 

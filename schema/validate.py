@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from .approximations import left_out, tight_paths
+from .base import ErrorBudget, TooManyErrors
 from .errors import Problem
 from .meaning import camera_inside, unresolved_names
 from .parts import parts_of_data, parts_of_scene
@@ -14,6 +15,7 @@ from .report import problems_of
 from .scene import Scene
 from .text import data_of_text
 
+MAX_ERRORS = 20_000
 MAX_PROBLEMS = 1000
 
 
@@ -31,7 +33,9 @@ def check(data: object) -> Report:
     problems: list[Problem] = []
     scene: Scene | None = None
     try:
-        scene = Scene.model_validate(data)
+        scene = Scene.model_validate(data, context=ErrorBudget(MAX_ERRORS))
+    except TooManyErrors:
+        return Report(None, [Problem("", f"a scene with at most {MAX_ERRORS} problems", "more")], [])
     except ValidationError as error:
         problems += problems_of(error)
     parts = parts_of_data(data) if scene is None else parts_of_scene(scene)
