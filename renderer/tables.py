@@ -113,6 +113,14 @@ class Pattern(NamedTuple):
     parallel: bool  # all pieces are lines of one direction
 
 
+BARE = Pattern(
+    Grid(np.zeros(2), np.ones(2), np.zeros(2, np.int32), np.zeros(2), np.zeros(1, np.int32), np.zeros(0, np.int32)),
+    np.zeros(0, PIECE), np.zeros(0, GROOVE), np.zeros(0, PROFILE_ROW), np.zeros((0, 2)), np.zeros(0, np.int32),
+    np.zeros((0, 2)), 0.0, 0.0, 0.0, 0.0, True,
+)  # fmt: skip
+"""The pattern of a surface without grooves."""
+
+
 MATERIAL = np.dtype(
     [
         ("base_color", "f8", (3,)),
@@ -125,6 +133,7 @@ MATERIAL = np.dtype(
 )  # fmt: skip
 
 DIRECTIONAL, POINT = 0, 1
+MAX_LIGHTS = 64  # bits of FOOTPRINT.blocked
 
 LIGHT = np.dtype(
     [

@@ -27,6 +27,9 @@ class Triangles(NamedTuple):
     object: Ints  # (n,) row of OBJECT
 
 
+NO_TRIANGLES = Triangles(np.zeros((0, 3, 3)), np.zeros((0, 3, 2)), np.zeros((0, 3, 3)), np.zeros(0, np.int32))
+
+
 @leaf
 def solve(a: float, b: float, c: float) -> tuple[float, float]:
     """The roots of a t^2 + 2 b t + c, the smaller first; NaN where there are none."""
@@ -293,3 +296,23 @@ def frames_at(
             n = (-n[0], -n[1], -n[2])
             frame.grooved = 0
         fill_frame(frame, p, a, b, n, origin)
+
+
+@kernel
+def touching(
+    middle: NDArray[np.void], mask: NDArray[np.uint64], corners: NDArray[np.void], masks: NDArray[np.uint64], cosine: float
+) -> NDArray[np.bool_]:
+    """Whether each square's centre (n,) and corners (4, n) hit one smooth surface in one light, or nothing at all."""
+    smooth = np.ones(len(middle), np.bool_)
+    for i in range(len(middle)):
+        m = middle[i]
+        for k in range(4):
+            c = corners[k, i]
+            same = c.object == m.object and masks[k, i] == mask[i]
+            if same and m.object >= 0:
+                turn = m.normal[0] * c.normal[0] + m.normal[1] * c.normal[1] + m.normal[2] * c.normal[2]
+                same = turn > cosine
+            if not same:
+                smooth[i] = False
+                break
+    return smooth

@@ -1,0 +1,103 @@
+"""The film: radiance of footprints summed to pixels, and pictures as files."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from renderer.kernel import kernel
+from renderer.tables import METHODS, Floats
+
+SUFFIXES = (".png", ".exr", ".npy")
+
+COLOURS = np.array(
+    [[0, 0, 0], [90, 90, 90], [60, 120, 200], [70, 170, 110], [220, 120, 50], [190, 60, 120]], np.uint8
+)
+"""How the AOV `method` looks as PNG, by METHODS."""
+
+
+@kernel
+def develop(
+    footprints: NDArray[np.void], radiance: Floats, method: NDArray[np.uint8], sky: Floats, image: Floats,
+    methods: NDArray[np.uint8],
+) -> None:  # fmt: skip
+    """Sum footprints (n,) with their radiance (n, 3) into a tile's pixels (m, 3); what none covers shows the sky.
+
+    A pixel's method is the dearest that any part of it took. Parts come in a fixed order, so that sums round alike.
+    """
+    covered = np.zeros(len(image))
+    image[:] = 0.0
+    methods[:] = 0
+    for i in range(len(footprints)):
+        pixel, weight = footprints[i].pixel, footprints[i].size * footprints[i].size
+        covered[pixel] += weight
+        methods[pixel] = max(methods[pixel], method[i])
+        for c in range(3):
+            image[pixel, c] += weight * radiance[i, c]
+    for pixel in range(len(image)):
+        open_part = max(1.0 - covered[pixel], 0.0)
+        for c in range(3):
+            image[pixel, c] += open_part * sky[c]
+
+
+def encode(radiance: NDArray[np.float32], suffix: str, exposure: float = 1.0) -> bytes:
+    """A picture (H, W, 3) of linear radiance as a file: .png (sRGB of exposure * radiance), .exr or .npy (linear)."""
+    if suffix == ".png":
+        return _png(srgb(radiance * np.float32(exposure)))
+    if suffix == ".npy":
+        return _npy(radiance.astype(np.float32, copy=False))
+    if suffix == ".exr":
+        return _exr({"RGB": radiance.astype(np.float32, copy=False)})
+    raise ValueError(f"expected one of {', '.join(SUFFIXES)}, found {suffix!r}")
+
+
+def encode_aov(values: NDArray[np.uint8], suffix: str) -> bytes:
+    """The AOV `method` (H, W), indices of METHODS: .png in colours, .exr (channel `method`, float) or .npy."""
+    if suffix == ".png":
+        return _png(COLOURS[values])
+    if suffix == ".npy":
+        return _npy(values)
+    if suffix == ".exr":
+        return _exr({"method": values.astype(np.float32)})
+    raise ValueError(f"expected one of {', '.join(SUFFIXES)}, found {suffix!r}")
+
+
+def srgb(linear: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Linear RGB as 8-bit sRGB (IEC 61966-2-1), clipped."""
+    clipped = np.clip(linear, 0.0, 1.0)
+    encoded = np.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055)
+    return np.asarray(encoded * 255.0 + 0.5, np.uint8)
+
+
+def shares(method: NDArray[np.uint8]) -> dict[str, float]:
+    """The share of the pixels that see an object which each method took."""
+    counts = np.bincount(method.ravel(), minlength=len(METHODS))[1:]
+    total = max(int(counts.sum()), 1)
+    return {name: int(count) / total for name, count in zip(METHODS[1:], counts, strict=True) if count}
+
+
+def _png(pixels: NDArray[np.uint8]) -> bytes:
+    out = io.BytesIO()
+    Image.fromarray(pixels, "RGB").save(out, "PNG", compress_level=3)
+    return out.getvalue()
+
+
+def _npy(values: NDArray[np.float32] | NDArray[np.uint8]) -> bytes:
+    out = io.BytesIO()
+    np.save(out, values)
+    return out.getvalue()
+
+
+def _exr(channels: dict[str, NDArray[np.float32]]) -> bytes:
+    import OpenEXR  # slow to load, and few pictures need it
+
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.exr"
+        OpenEXR.File(header, {name: np.ascontiguousarray(values) for name, values in channels.items()}).write(str(path))
+        return path.read_bytes()

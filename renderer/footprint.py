@@ -1,0 +1,138 @@
+"""Footprints: the squares of the screen that are integrated as one.
+
+A pixel whose corners and centre see one smooth surface, in one light, is one footprint. Any other is split in four
+again and again along the edge that runs through it, so that a silhouette is antialiased and the inside of a surface
+is still looked at once. Footprints of the last level take what one random point in them sees.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from renderer.geometry.shapes import touching
+from renderer.raycast import Caster
+from renderer.tables import FOOTPRINT, FRAME, HIT, RECTANGLE, Camera, Floats, Ints
+
+LEVELS = 4  # splits of a pixel on an edge: 256 footprints at most
+SMOOTH_COSINE = 0.9  # normals within a footprint differ by less than about 25 degrees
+
+
+class Tile(NamedTuple):
+    """A rectangle of pixels."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+
+
+class Footprints(NamedTuple):
+    """What a tile's pixels see of the scene; squares that see no object are left out."""
+
+    footprints: NDArray[np.void]  # (n,) FOOTPRINT, in the order of their pixels at each level
+    frames: NDArray[np.void]  # (m,) FRAME
+
+
+def rays(camera: Camera, x: Floats, y: Floats) -> Floats:
+    """Directions (n, 3) of the rays through screen points, pixels; not unit vectors."""
+    return camera.corner + x[:, None] * camera.right + y[:, None] * camera.down
+
+
+def flat_frames(caster: Caster, origin: Floats) -> dict[int, NDArray[np.void]]:
+    """The one FRAME of each rectangle that the camera sees from the front, by row of OBJECT."""
+    frames = {}
+    for row, obj in enumerate(caster.objects):
+        normal = obj["rotation"][:, 2]
+        if obj["shape"] == RECTANGLE and float(normal @ (origin - obj["translation"])) > 0.0:
+            hit = np.zeros(1, HIT)
+            hit["object"], hit["t"], hit["u"], hit["v"], hit["normal"] = row, 1.0, 0.5, 0.5, normal
+            frames[row] = caster.frames(origin, (obj["translation"] - origin)[None, :], hit)
+    return frames
+
+
+def footprints(
+    caster: Caster, camera: Camera, lights: NDArray[np.void], tile: Tile, flat: dict[int, NDArray[np.void]], seed: int
+) -> Footprints:
+    """The footprints of a tile."""
+    ys, xs = np.mgrid[0 : tile.height + 1, 0 : tile.width + 1]
+    corner_rays = rays(camera, (xs + tile.x).ravel().astype(float), (ys + tile.y).ravel().astype(float))
+    corners = caster.hits(camera.origin, corner_rays)
+    corner_mask = caster.blocked(camera.origin, corner_rays, corners, lights)
+    x, y = (xs[:-1, :-1] + tile.x).ravel().astype(float), (ys[:-1, :-1] + tile.y).ravel().astype(float)
+    pixel = np.arange(tile.width * tile.height, dtype=np.int32)
+    wide = tile.width + 1
+    first = (pixel // tile.width) * wide + pixel % tile.width
+    around = np.stack([first, first + 1, first + wide, first + wide + 1])  # (4, n)
+    around_hits, around_mask = corners[around], corner_mask[around]
+    size = 1.0
+    done: list[Footprints] = []
+    for level in range(LEVELS + 1):
+        at = 0.5 if level < LEVELS else _inside(x, y, seed)
+        middle_rays = rays(camera, x + size * at, y + size * at if level < LEVELS else y + size * _inside(y, x, seed))
+        middle = caster.hits(camera.origin, middle_rays)
+        mask = caster.blocked(camera.origin, middle_rays, middle, lights)
+        if level < LEVELS:
+            smooth = touching(middle, mask, around_hits, around_mask, SMOOTH_COSINE)
+        else:
+            smooth = np.ones(len(middle), np.bool_)
+        keep = smooth & (middle["object"] >= 0)
+        done.append(_framed(caster, camera, flat, pixel[keep], x[keep], y[keep], size, middle_rays[keep], middle[keep], mask[keep]))
+        split = ~smooth
+        if not split.any():
+            break
+        size *= 0.5
+        pixel = np.repeat(pixel[split], 4)
+        x = (x[split][:, None] + size * np.array([0.0, 1.0, 0.0, 1.0])).ravel()
+        y = (y[split][:, None] + size * np.array([0.0, 0.0, 1.0, 1.0])).ravel()
+        if level + 1 < LEVELS:
+            cx = np.concatenate([x, x + size, x, x + size])
+            cy = np.concatenate([y, y, y + size, y + size])
+            directions = rays(camera, cx, cy)
+            hits = caster.hits(camera.origin, directions)
+            around_hits = hits.reshape(4, -1)
+            around_mask = caster.blocked(camera.origin, directions, hits, lights).reshape(4, -1)
+    return _joined(done)
+
+
+def _inside(x: Floats, y: Floats, seed: int) -> Floats:
+    """A random number in [0, 1) for each place, the same for every tile."""
+    bits = (x * 4096.0).astype(np.int64).astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
+    bits ^= (y * 4096.0).astype(np.int64).astype(np.uint64) * np.uint64(0xC2B2AE3D27D4EB4F) + np.uint64(seed)
+    bits = (bits ^ (bits >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    bits = (bits ^ (bits >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return (bits >> np.uint64(11)).astype(np.float64) / 9007199254740992.0
+
+
+def _framed(
+    caster: Caster, camera: Camera, flat: dict[int, NDArray[np.void]], pixel: Ints, x: Floats, y: Floats, size: float,
+    directions: Floats, hits: NDArray[np.void], mask: NDArray[np.uint64],
+) -> Footprints:  # fmt: skip
+    """Footprints with the frames of their centres' hits; those of a rectangle share one."""
+    out = np.zeros(len(hits), FOOTPRINT)
+    out["pixel"], out["x"], out["y"], out["size"], out["blocked"] = pixel, x, y, size, mask
+    shared = []
+    rest = np.ones(len(hits), np.bool_)
+    for row, frame in flat.items():
+        of = hits["object"] == row
+        if of.any():
+            out["frame"][of] = len(shared)
+            shared.append(frame)
+            rest &= ~of
+    count = int(rest.sum())
+    out["frame"][rest] = len(shared) + np.arange(count)
+    if count:
+        shared.append(caster.frames(camera.origin, directions[rest], hits[rest]))
+    return Footprints(out, np.concatenate(shared) if shared else np.zeros(0, FRAME))
+
+
+def _joined(parts: list[Footprints]) -> Footprints:
+    start = 0
+    for part in parts:
+        part.footprints["frame"] += start
+        start += len(part.frames)
+    return Footprints(
+        np.concatenate([part.footprints for part in parts]), np.concatenate([part.frames for part in parts])
+    )

@@ -1,0 +1,234 @@
+"""The driver: a frame is a pipeline of stages over the footprints of a tile (DESIGN, section 2).
+
+Tiles run on a pool of threads. A pixel depends on its place alone, so that pictures are the same for any number of
+threads and any size of tile.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import schema
+from renderer import CACHE, film, shading
+from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
+from renderer.csg import csg
+from renderer.errors import Cancelled, Fault, RenderError
+from renderer.footprint import Tile, flat_frames, footprints
+from renderer.line import LOOSE, NOT_MINE, PAPER, STRICT, line
+from renderer.raycast import Caster
+from renderer.tables import BARE, BASE, Floats
+
+TILE = 64  # pixels
+METHODS = ("auto", "base", "segment", "line", "csg", "geometry")
+AOVS = ("method",)
+
+_READY = CACHE / "ready"  # written once all kernels have been compiled
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What a render gives."""
+
+    radiance: NDArray[np.float32]  # (H, W, 3) linear
+    aovs: dict[str, NDArray[np.uint8]]  # method: (H, W) indices of tables.METHODS
+    seconds: dict[str, float]  # by stage, those of threads added up; kernels: loading them; total: by the clock
+    pattern_bytes: int  # memory of the compiled patterns
+    shares: dict[str, float]  # by method, of the pixels that see an object
+
+
+class Settings(NamedTuple):
+    """How to render."""
+
+    method: str
+    samples: int
+    seed: int
+
+
+@dataclass
+class Frame:
+    """A picture in the making."""
+
+    scene: CompiledScene
+    settings: Settings
+    caster: Caster
+    flat: dict[int, NDArray[np.void]]
+    albedo: Floats
+    radiance: NDArray[np.float32]
+    method: NDArray[np.uint8]
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def tile(self, tile: Tile) -> dict[str, float]:
+        """Render one tile: the seconds of its stages."""
+        scene, settings = self.scene, self.settings
+        clock = time.perf_counter
+        begin = clock()
+        seen = footprints(self.caster, scene.camera, scene.lighting.lights, tile, self.flat, settings.seed)
+        cast = clock()
+        radiance = np.zeros((len(seen.footprints), 3))
+        method = np.full(len(seen.footprints), BASE, np.uint8)
+        of = seen.frames["object"][seen.footprints["frame"]]
+        grooved = seen.frames["grooved"][seen.footprints["frame"]] != 0
+        shaded = sampled = 0.0
+        for row in np.unique(of):
+            carries = grooved & (scene.objects["pattern"][row] >= 0) & (settings.method != "base")
+            for pattern, chosen in (
+                (BARE, np.flatnonzero((of == row) & ~carries)),
+                (scene.patterns[scene.objects["pattern"][row]], np.flatnonzero((of == row) & carries)),
+            ):
+                if not len(chosen):
+                    continue
+                rest = (
+                    pattern, seen.footprints, chosen, seen.frames, scene.camera, scene.lighting, scene.materials,
+                    scene.slots[row], self.albedo, radiance, method,
+                )  # fmt: skip
+                start = clock()
+                if pattern is BARE:
+                    line(LOOSE, *rest)
+                elif settings.method == "csg":
+                    csg(settings.samples, False, settings.seed, *rest)
+                else:
+                    line({"auto": STRICT, "line": LOOSE, "segment": PAPER}[settings.method], *rest)
+                middle = clock()
+                shaded += middle - start
+                left = chosen[method[chosen] == NOT_MINE]
+                if len(left):
+                    csg(settings.samples, True, settings.seed, *rest[:2], left, *rest[3:])
+                    sampled += clock() - middle
+        start = clock()
+        image = np.empty((tile.width * tile.height, 3))
+        methods = np.empty(tile.width * tile.height, np.uint8)
+        film.develop(seen.footprints, radiance, method, scene.lighting.sky, image, methods)
+        rows, columns = slice(tile.y, tile.y + tile.height), slice(tile.x, tile.x + tile.width)
+        self.radiance[rows, columns] = image.reshape(tile.height, tile.width, 3)
+        self.method[rows, columns] = methods.reshape(tile.height, tile.width)
+        return {"cast": cast - begin, "line": shaded, "csg": sampled, "film": clock() - start}
+
+
+def render(
+    scene: schema.Scene,
+    *,
+    method: str | None = None,
+    samples: int | None = None,
+    threads: int | None = None,
+    resolution: tuple[int, int] | None = None,
+    progress: Callable[[float], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+    meshes: Callable[[str], bytes] | None = None,
+    patterns: PatternCache | None = None,
+    tile: int = TILE,
+) -> Picture:
+    """Render a scene. What is not given is the scene's own; threads: one a processor.
+
+    progress: called with the part done, 0 to 1. cancelled: asked between tiles. meshes: a mesh file's bytes by name.
+    Raises RenderError where the scene cannot be rendered, Cancelled where `cancelled` says so.
+    """
+    begin = time.perf_counter()
+    settings = Settings(method or scene.render.method, samples or scene.render.samples, scene.render.seed)
+    if settings.method not in METHODS:
+        raise RenderError(Fault("/render/method", f"one of {', '.join(METHODS)}", repr(settings.method)))
+    seconds = {"kernels": warm_up()}
+    start = time.perf_counter()
+    compiled = compile_scene(
+        scene, resolution or scene.camera.resolution, patterns if patterns is not None else PatternCache(), meshes
+    )
+    seconds["compile"] = time.perf_counter() - start
+    frame = _frame(compiled, settings)
+    _tiles(frame, tile, threads or os.cpu_count() or 1, progress, cancelled)
+    seconds |= frame.seconds
+    seconds["total"] = time.perf_counter() - begin
+    return Picture(
+        radiance=frame.radiance,
+        aovs={"method": frame.method},
+        seconds=seconds,
+        pattern_bytes=sum(table_bytes(pattern) for pattern in compiled.patterns),
+        shares=film.shares(frame.method),
+    )
+
+
+def _frame(compiled: CompiledScene, settings: Settings) -> Frame:
+    caster = Caster(compiled.objects, compiled.triangles)
+    width, height = compiled.resolution
+    lit = bool(compiled.lighting.sky.any())
+    return Frame(
+        scene=compiled,
+        settings=settings,
+        caster=caster,
+        flat=flat_frames(caster, compiled.camera.origin),
+        albedo=shading.gloss_albedo(16, 48) if lit else np.zeros((2, 2, 2)),
+        radiance=np.zeros((height, width, 3), np.float32),
+        method=np.zeros((height, width), np.uint8),
+    )
+
+
+def _tiles(
+    frame: Frame, size: int, threads: int, progress: Callable[[float], None] | None, cancelled: Callable[[], bool] | None
+) -> None:
+    """Render all tiles, as many at a time as there are threads."""
+    height, width = frame.method.shape
+    todo = [
+        Tile(x, y, min(size, width - x), min(size, height - y))
+        for y in range(0, height, size)
+        for x in range(0, width, size)
+    ]
+    total, done = len(todo), 0
+    todo.reverse()
+    with ThreadPoolExecutor(threads, "tile") as pool:
+        running: set[Future[dict[str, float]]] = set()
+        try:
+            while todo or running:
+                if cancelled is not None and cancelled():
+                    raise Cancelled
+                while todo and len(running) < 2 * threads:
+                    running.add(pool.submit(frame.tile, todo.pop()))
+                finished, running = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    for stage, spent in future.result().items():
+                        frame.seconds[stage] = frame.seconds.get(stage, 0.0) + spent
+                    done += 1
+                    if progress is not None:
+                        progress(done / total)
+        finally:
+            for future in running:
+                future.cancel()
+
+
+def kernels_compiled() -> bool:
+    """Whether the kernels of this version have been compiled on this machine."""
+    return _READY.exists()
+
+
+_warm = False
+
+
+def warm_up() -> float:
+    """Compile the kernels, or load them from their cache: the seconds that took, next to none from the second call."""
+    global _warm
+    if _warm:
+        return 0.0
+    begin = time.perf_counter()
+    scene = schema.check(
+        {
+            "intaglio": 1,
+            "camera": {"origin": [0, 0, 3], "target": [0, 0.1, 0], "resolution": [2, 2]},
+            "lights": [{"type": "constant", "radiance": [1, 1, 1]}, {"type": "point", "position": [0, 0, 2], "intensity": [1, 1, 1]}],
+            "materials": {"m": {}},
+            "patterns": {"p": {"grooves": [{"path": {"type": "circle", "center": [0.5, 0.5], "radius": 0.2},
+                                            "profile": {"type": "v", "width": 0.1, "depth": 0.1}}]}},
+            "objects": [{"shape": {"type": "sphere", "radius": 1}, "material": "m", "pattern": "p"}],
+        }
+    ).scene  # fmt: skip
+    assert scene is not None
+    compiled = compile_scene(scene, (2, 2), PatternCache(), None)
+    for method in ("line", "csg"):
+        _frame(compiled, Settings(method, 1, 0)).tile(Tile(0, 0, 2, 2))
+    _READY.touch()
+    _warm = True
+    return time.perf_counter() - begin

@@ -1,0 +1,94 @@
+"""Rays against the bare shapes of a scene. The only file that knows Embree, which holds the meshes.
+
+Embree finds the triangle, in single precision; where on it the ray passes is found again in double precision, so that
+a footprint on a mesh is as exact as on a plane.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from embreex.mesh_construction import TriangleMesh
+from embreex.rtcore_scene import EmbreeScene
+from numpy.typing import NDArray
+
+from renderer.geometry.shapes import NO_TRIANGLES, START, Triangles, block, cast, cast_triangles, frames_at
+from renderer.tables import FRAME, HIT, POINT, Floats, Ints
+
+Bools = NDArray[np.bool_]
+
+
+class Caster:
+    """The shapes of a scene, ready for rays."""
+
+    def __init__(self, objects: NDArray[np.void], triangles: Triangles = NO_TRIANGLES) -> None:
+        self.objects = objects
+        self.triangles = triangles
+        self._embree: EmbreeScene | None = None
+        self._size = 1.0
+        if len(triangles.corners):
+            # Single precision is finest around 0.
+            self._middle = 0.5 * (triangles.corners.min(axis=(0, 1)) + triangles.corners.max(axis=(0, 1)))
+            corners = triangles.corners - self._middle
+            self._size = float(np.abs(corners).max())
+            self._embree = EmbreeScene(robust=True)
+            TriangleMesh(self._embree, np.ascontiguousarray(corners, np.float32))
+
+    @property
+    def shadows(self) -> bool:
+        """Whether one part of the scene may stand in the light of another: not on a single convex shape."""
+        return len(self.objects) > 1 or self._embree is not None
+
+    def hits(self, origin: Floats, directions: Floats) -> NDArray[np.void]:
+        """The nearest HIT (n,) of each ray from `origin` (3,) along `directions` (n, 3)."""
+        hits = np.zeros(len(directions), HIT)
+        cast(self.objects, origin, directions, hits)
+        if self._embree is not None and len(directions):
+            origins = np.broadcast_to((origin - self._middle).astype(np.float32), directions.shape)
+            found = self._embree.run(np.ascontiguousarray(origins), directions.astype(np.float32), output=1)
+            cast_triangles(self.triangles, origin, directions, found["primID"].astype(np.int32), hits)
+        return hits
+
+    def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> NDArray[np.void]:
+        """The tangent FRAME (n,) at each of the hits (n,), none of them a miss."""
+        frames = np.zeros(len(hits), FRAME)
+        frames_at(self.objects, self.triangles, origin, directions, hits, frames)
+        return frames
+
+    def blocked(self, origin: Floats, directions: Floats, hits: NDArray[np.void], lights: NDArray[np.void]) -> NDArray[np.uint64]:
+        """For each hit (n,) a mask whose bit l says that something stands between it and light l.
+
+        A convex shape does not block itself: its facets know which way they face.
+        """
+        mask = np.zeros(len(hits), np.uint64)
+        if not self.shadows:
+            return mask
+        seen = hits["object"] >= 0
+        points = origin + np.where(seen, hits["t"], 0.0)[:, None] * directions
+        normals = hits["normal"] * np.where(np.sum(hits["normal"] * directions, axis=1) > 0.0, -1.0, 1.0)[:, None]
+        for index, light in enumerate(lights):
+            if light["kind"] == POINT:
+                to_light = light["vector"] - points
+                far = np.full(len(hits), 1.0 - 1e-9)
+            else:
+                to_light = np.broadcast_to(light["vector"], points.shape)
+                far = np.full(len(hits), np.inf)
+            own = np.where(seen, hits["object"], -1).astype(np.int32)
+            blocked = np.zeros(len(hits), np.bool_)
+            block(self.objects, points, np.ascontiguousarray(to_light), far, own, blocked)
+            facing = seen & ~blocked & (np.sum(normals * to_light, axis=1) > 0.0)
+            if self._embree is not None and facing.any():
+                start = points + normals * (START * 10 * self._size)
+                blocked[facing] |= self._occluded(start[facing], to_light[facing], light["kind"] == POINT)
+            mask |= np.where(blocked, np.uint64(1) << np.uint64(index), np.uint64(0))
+        return mask
+
+    def _occluded(self, start: Floats, to_light: Floats, bounded: bool) -> Bools:
+        """Whether a mesh stands in the way from each point (n, 3), for lights at a place not beyond it."""
+        assert self._embree is not None
+        distances = np.linalg.norm(to_light, axis=1) if bounded else np.full(len(start), 1e30)
+        along = to_light / np.linalg.norm(to_light, axis=1, keepdims=True)
+        hits = self._embree.run(
+            (start - self._middle).astype(np.float32), along.astype(np.float32),
+            distances.astype(np.float32), query="OCCLUDED",
+        )  # fmt: skip
+        return np.asarray(hits >= 0)
