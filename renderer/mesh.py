@@ -17,12 +17,15 @@ from typing import NamedTuple
 
 import numpy as np
 from manifold3d import Error, Manifold, OpType
+from numpy.typing import NDArray
 
-from renderer.sweep import End, Ribbon, Stroke, extent, positions, ribbons, solid, strokes_of, sweep
+from renderer.sweep import End, Faces, Ribbon, Stroke, extent, positions, ribbons, solid, strokes_of, sweep
 from renderer.tables import Floats, Ints, Pattern
 
 LIMIT = 4_000_000
 """The most triangles that `build` makes."""
+
+_CELLS = 512  # of the grid that tells which pieces are apart, along either side
 
 
 class SolidMesh(NamedTuple):
@@ -77,12 +80,12 @@ def build(
     raised = lowered = False
     for level in levels:
         if raised and level["clear"]:
-            whole = _join([whole, *_solids(level["clear"])], OpType.Subtract)
+            whole = _join([whole, *_solids(level["clear"], box)], OpType.Subtract)
         fill = level["fill"] if lowered else []
         if fill or level["add"]:
-            whole = _join([whole, *_solids(fill), *_solids(level["add"])], OpType.Add)
+            whole = _join([whole, *_solids(fill, box), *_solids(level["add"], box)], OpType.Add)
         if level["remove"]:
-            whole = _join([whole, *_solids(level["remove"])], OpType.Subtract)
+            whole = _join([whole, *_solids(level["remove"], box)], OpType.Subtract)
         raised, lowered = raised or bool(level["add"]), lowered or bool(level["remove"])
     if levels:
         whole = _join([whole, _block(box, below - tower, above + tower)], OpType.Intersect)
@@ -232,8 +235,49 @@ def _crossings(chords: Floats, facets: Floats) -> float:
     return 0.5 * total * n / len(some)
 
 
-def _solids(copies: list[_Copy]) -> list[Manifold]:
-    return [sweep(copy.ribbon, copy.shift) for copy in copies]
+def _solids(copies: list[_Copy], box: _Box) -> list[Manifold]:
+    """The swept solids, those that are well apart put together in one: booleans take time for every solid."""
+    if len(copies) < 3:
+        return [solid([sweep(copy.ribbon, copy.shift)]) for copy in copies]
+    taken: list[NDArray[np.bool_]] = []
+    groups: list[list[Faces]] = []
+    for copy in copies:
+        cells = _cells(copy, box)
+        for i in range(len(groups) + 1):
+            if i == len(groups):
+                taken.append(np.zeros((_CELLS, _CELLS), np.bool_))
+                groups.append([])
+            if not (taken[i] & cells).any():
+                break
+        taken[i] |= cells
+        groups[i].append(sweep(copy.ribbon, copy.shift))
+    return [solid(group) for group in groups]
+
+
+def _cells(copy: _Copy, box: _Box) -> NDArray[np.bool_]:
+    """The cells of a fine grid over the box that a ribbon may touch (and maybe some beside them)."""
+    ribbon, stroke = copy.ribbon, copy.ribbon.stroke
+    cell = max(box.p1 - box.p0, box.q1 - box.q0) / _CELLS
+    b0, b1 = float(ribbon.section.b[0]), float(ribbon.section.b[-1])
+    half = _width(stroke)
+    across = 2 + math.ceil((b1 - b0) * stroke.scale.most / (0.7 * cell))
+    b = np.linspace(b0, b1, across)
+    start, finish = extent(stroke, 0, b), extent(stroke, 1, b)
+    if stroke.closed:
+        start, finish = np.zeros(across), np.full(across, stroke.length)
+    span = float(np.abs(finish - start).max()) * (1.0 + abs(stroke.curvature) * half)
+    along = 2 + math.ceil(span / (0.7 * cell))
+    u = np.linspace(0.0, 1.0, along)[:, None]
+    s = (1.0 - u) * start + u * finish
+    p, q = positions(stroke, s, stroke.scale(s) * b)
+    x, y = (p + copy.shift[0] - box.p0) / cell, (q + copy.shift[1] - box.q0) / cell
+    marked = np.zeros((_CELLS, _CELLS), np.bool_)
+    columns = [np.clip(x + d, 0, _CELLS - 1).astype(np.int32) for d in (-0.6, 0.6)]
+    rows = [np.clip(y + d, 0, _CELLS - 1).astype(np.int32) for d in (-0.6, 0.6)]
+    for row in rows:
+        for column in columns:
+            marked[row, column] = True
+    return marked
 
 
 def _join(parts: list[Manifold], how: OpType) -> Manifold:
@@ -250,7 +294,7 @@ def _block(box: _Box, low: float, high: float) -> Manifold:
         [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6],
          [1, 3, 5], [3, 7, 5]]
     )  # fmt: skip
-    return solid(corners, triangles, np.zeros(len(triangles), np.int64))
+    return solid([Faces(corners, triangles, np.zeros(len(triangles), np.int64))])
 
 
 def _mesh(pattern: Pattern, whole: Manifold) -> SolidMesh:

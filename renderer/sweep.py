@@ -495,11 +495,46 @@ class Ribbon(NamedTuple):
         return 2 * around * (count if self.stroke.closed else count - 1) + 2 * (around - 2)
 
 
+def _raised(whole: Section, inner: NDArray[np.intp]) -> list[Section]:
+    """The parts of a cross-section that stand above w = 0, to be added. Over the internal facets, above which the
+    groove itself removes everything, the added solid is higher: so its faces never coincide with the removal's."""
+    b, w, facet = whole
+    if len(inner) and w.max() > 0.0:
+        first, last = int(inner[0]), int(inner[-1]) + 1
+        if w[first] > 0.0 or w[last] > 0.0 or w[first : last + 1].max() > 0.0:
+            top = float(w[first : last + 1].max())
+            ends = _groups(b[first : last + 1])
+            flat = np.array([first + head for head, _ in ends])
+            bridge_b, bridge_w = b[flat], np.full(len(flat), top)
+            lead, tail = int(w[first] < top), int(w[last] < top)
+            inside_b = np.concatenate([b[first : first + 1]] * lead + [bridge_b] + [b[last : last + 1]] * tail)
+            inside_w = np.concatenate([w[first : first + 1]] * lead + [bridge_w] + [w[last : last + 1]] * tail)
+            none = np.full(len(inside_b) - 1, -1, np.int32)
+            b = np.concatenate([b[:first], inside_b, b[last + 1 :]])
+            w = np.concatenate([w[:first], inside_w, w[last + 1 :]])
+            facet = np.concatenate([facet[:first], none, facet[last:]])
+    above = (w[1:] > 0.0) | (w[:-1] > 0.0)
+    parts = []
+    i = 0
+    while i < len(above):
+        first = i
+        while i < len(above) and above[i]:
+            i += 1
+        if i > first and b[i] > b[first]:
+            parts.append(Section(b[first : i + 1], w[first : i + 1], facet[first:i]))
+        i += 1
+    return parts
+
+
 def ribbons(stroke: Stroke, *, top: float, bottom: float) -> dict[str, list[Ribbon]]:
     """The ribbons of a stroke: 'add', 'remove' and its band above ('clear') and below ('fill') the plate's surface."""
     out: dict[str, list[Ribbon]] = {"add": [], "remove": [], "clear": [], "fill": []}
     for whole in _refined(stroke):
         rings = ring_table(stroke, whole)
+        longer = rings.copy()  # the removal reaches a hair beyond the addition
+        if not stroke.closed:
+            longer[0] -= stroke.hair
+            longer[-1] += stroke.hair
         free = [True, True]  # an end at an arc's centre is not widened
         if stroke.curvature != 0.0:
             radius = 1.0 / stroke.curvature
@@ -512,18 +547,10 @@ def ribbons(stroke: Stroke, *, top: float, bottom: float) -> dict[str, list[Ribb
             first, last = int(inner[0]), int(inner[-1]) + 1
             part = Section(whole.b[first : last + 1], whole.w[first : last + 1], whole.facet[first:last])
             if part.b[-1] > part.b[0]:
-                out["remove"].append(Ribbon(stroke, whole, rings, part, top, True, widen))
-        above = (whole.w[1:] > 0.0) | (whole.w[:-1] > 0.0)
-        i = 0
-        while i < len(above):
-            first = i
-            while i < len(above) and above[i]:
-                i += 1
-            if i > first:
-                part = Section(whole.b[first : i + 1], whole.w[first : i + 1], whole.facet[first:i])
-                if part.b[-1] > part.b[0]:
-                    out["add"].append(Ribbon(stroke, whole, rings, part, bottom, False, (False, False)))
-            i += 1
+                out["remove"].append(Ribbon(stroke, whole, longer, part, top, True, widen))
+        out["add"] += [
+            Ribbon(stroke, whole, rings, part, bottom, False, (False, False)) for part in _raised(whole, inner)
+        ]
         ends = _groups(whole.b)
         single = np.array([first for first, _ in ends])
         level = Section(whole.b[single], np.zeros(len(single)), np.full(len(single) - 1, -1, np.int32))
@@ -532,7 +559,15 @@ def ribbons(stroke: Stroke, *, top: float, bottom: float) -> dict[str, list[Ribb
     return out
 
 
-def sweep(ribbon: Ribbon, shift: tuple[float, float]) -> Manifold:
+class Faces(NamedTuple):
+    """A closed mesh with tags."""
+
+    vertices: Floats  # (n, 3)
+    triangles: NDArray[np.int64]  # (m, 3)
+    tags: NDArray[np.int64]  # (m,)
+
+
+def sweep(ribbon: Ribbon, shift: tuple[float, float]) -> Faces:
     """The solid of a ribbon, moved by `shift`."""
     stroke, section = ribbon.stroke, ribbon.section
     edges, caps, groups = _loop(section, ribbon.up)
@@ -581,16 +616,17 @@ def sweep(ribbon: Ribbon, shift: tuple[float, float]) -> Manifold:
             triangles, ids = triangles[alive], ids[alive]
             used, triangles_flat = np.unique(triangles, return_inverse=True)
             vertices, triangles = vertices[used], triangles_flat.reshape(-1, 3)
-    return solid(vertices, triangles, ids)
+    return Faces(vertices, triangles, ids)
 
 
-def solid(vertices: Floats, triangles: NDArray[np.int64], ids: NDArray[np.int64]) -> Manifold:
-    """A closed mesh with its tags as a manifold."""
+def solid(parts: list[Faces]) -> Manifold:
+    """Closed meshes that do not touch as one manifold."""
+    first = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
     made = Manifold(
         Mesh64(
-            np.ascontiguousarray(vertices, np.float64),
-            np.ascontiguousarray(triangles, np.uint64),
-            face_id=np.ascontiguousarray(ids, np.uint64),
+            np.concatenate([part.vertices for part in parts]),
+            np.concatenate([part.triangles + n for part, n in zip(parts, first, strict=True)]).astype(np.uint64),
+            face_id=np.concatenate([part.tags for part in parts]).astype(np.uint64),
         )
     )
     if made.status() != Error.NoError:
