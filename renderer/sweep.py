@@ -503,12 +503,12 @@ def _raised(whole: Section, inner: NDArray[np.intp]) -> list[Section]:
         first, last = int(inner[0]), int(inner[-1]) + 1
         if w[first] > 0.0 or w[last] > 0.0 or w[first : last + 1].max() > 0.0:
             top = float(w[first : last + 1].max())
-            ends = _groups(b[first : last + 1])
-            flat = np.array([first + head for head, _ in ends])
-            bridge_b, bridge_w = b[flat], np.full(len(flat), top)
+            flat = np.array([first + head for head, _ in _groups(b[first : last + 1])])
+            # Where the bridge is higher than its end it leans inwards, away from the side of the removal.
             lead, tail = int(w[first] < top), int(w[last] < top)
-            inside_b = np.concatenate([b[first : first + 1]] * lead + [bridge_b] + [b[last : last + 1]] * tail)
-            inside_w = np.concatenate([w[first : first + 1]] * lead + [bridge_w] + [w[last : last + 1]] * tail)
+            flat = flat[lead : len(flat) - tail]
+            inside_b = np.concatenate([b[first : first + lead], b[flat], b[last : last + tail]])
+            inside_w = np.concatenate([w[first : first + lead], np.full(len(flat), top), w[last : last + tail]])
             none = np.full(len(inside_b) - 1, -1, np.int32)
             b = np.concatenate([b[:first], inside_b, b[last + 1 :]])
             w = np.concatenate([w[:first], inside_w, w[last + 1 :]])
@@ -530,6 +530,14 @@ def ribbons(stroke: Stroke, *, top: float, bottom: float) -> dict[str, list[Ribb
     """The ribbons of a stroke: 'add', 'remove' and its band above ('clear') and below ('fill') the plate's surface."""
     out: dict[str, list[Ribbon]] = {"add": [], "remove": [], "clear": [], "fill": []}
     for whole in _refined(stroke):
+        inner = np.flatnonzero((whole.facet >= stroke.inner[0]) & (whole.facet < stroke.inner[1]))
+        if len(inner) and whole.w[inner[0] : inner[-1] + 2].max() > min(whole.w[inner[0]], whole.w[inner[-1] + 1]):
+            wide = inner[np.diff(whole.b)[inner] > 0.0]
+            if len(wide):
+                b = whole.b
+                lean = [0.75 * b[wide[0]] + 0.25 * b[wide[0] + 1], 0.25 * b[wide[-1]] + 0.75 * b[wide[-1] + 1]]
+                whole = insert(whole, np.array(lean))
+        inner = np.flatnonzero((whole.facet >= stroke.inner[0]) & (whole.facet < stroke.inner[1]))
         rings = ring_table(stroke, whole)
         longer = rings.copy()  # the removal reaches a hair beyond the addition
         if not stroke.closed:
@@ -542,7 +550,6 @@ def ribbons(stroke: Stroke, *, top: float, bottom: float) -> dict[str, list[Ribb
             if abs(float(whole.b[-which]) * stroke.scale.most) >= abs(radius) * (1.0 - 1e-9):
                 free[which] = False
         widen = (free[0], free[1])
-        inner = np.flatnonzero((whole.facet >= stroke.inner[0]) & (whole.facet < stroke.inner[1]))
         if len(inner):
             first, last = int(inner[0]), int(inner[-1]) + 1
             part = Section(whole.b[first : last + 1], whole.w[first : last + 1], whole.facet[first:last])

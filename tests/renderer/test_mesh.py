@@ -503,6 +503,24 @@ def test_window_crops_long_paths() -> None:
     assert len(agree(m).triangles) < 5000
 
 
+def test_nothing_stands_above_the_surface() -> None:
+    """No thin walls left: around a vertex the surface gets as high as the vertex."""
+    m = Maker()
+    peak: Points = [(-0.1, 0.0), (-0.05, -0.03), (0.0, 0.05), (0.05, -0.03), (0.1, 0.0)]
+    for profile, y in ((SKEW, -0.4), (peak, 0.1)):
+        g = m.groove(profile, kind=SCALE_LINEAR, numbers=(0.6, 1.0, 0.0))
+        m.piece(g, (-0.6, y), 0.3, 1.1, -0.8, ends=(PROFILE, FLAT))
+        m.line(g, (-0.6, y + 0.2), (0.7, y), ends=(FLAT, PROFILE))
+    pattern = m.pattern()
+    mesh = build(pattern, (-1, -1, 1, 1), arc_tolerance=2e-5, margin=0.25)
+    inside = (np.abs(mesh.vertices[:, :2]).max(axis=1) < 1.0) & (mesh.vertices[:, 2] > -0.12)
+    vertices = mesh.vertices[inside]
+    for p, q, w in vertices[np.random.default_rng(2).permutation(len(vertices))[:800]]:
+        turns = [0.1 + 0.785 * i for i in range(8)]
+        around = [height(pattern, p + r * math.cos(a), q + r * math.sin(a)) for r in (2e-6, 1e-4) for a in turns]
+        assert w <= max(around) + 5e-4, (p, q, w)
+
+
 # --- materials ---
 
 
