@@ -38,7 +38,7 @@ LARGEST_ARC = 2 * math.pi / 3
 MOST_SEGMENTS = 200_000
 """The largest number of segments that one path may need."""
 
-_SAMPLES = 16  # points at which a biarc is compared with its piece of the curve
+_SAMPLES = 24  # points at which a biarc is compared with its piece of the curve
 _MARGIN = 0.9  # of the tolerance, for what lies between the samples
 _STRAIGHT = 5e-13  # half-angles below this make a line: the tangents still agree to 1e-12
 _SLACKS = (1.02, 1.02, 1.06, 1.12, 1.25)  # rounds of moving the ends of pieces: more than the shares alone ask for

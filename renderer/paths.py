@@ -343,7 +343,10 @@ def _lines(points: Sequence[Floats]) -> list[_Element]:
 
 
 def _bezier(p: Floats, tolerance: float, whole: bool = True) -> list[_Element]:
-    """A cubic Bézier with the control points p (4, 2): lines where they lie on one, else a curve, or two at a cusp."""
+    """A cubic Bézier with the control points p (4, 2): lines where they lie on one, else a curve.
+
+    A hairpin whose radius is below a hundredth of the tolerance counts as a cusp: two curves, in opposite directions.
+    """
     p = p.copy()
     for inner, outer in ((1, 0), (2, 3)):  # a handle this short would only make a hook of a thousandth of the tolerance
         if math.hypot(*(p[inner] - p[outer])) < 1e-3 * tolerance:
@@ -366,12 +369,10 @@ def _bezier(p: Floats, tolerance: float, whole: bool = True) -> list[_Element]:
     if whole:
         slopes = np.roots([4 * (a @ a), 6 * (a @ b), 2 * (b @ b + 2 * (a @ c)), 2 * (b @ c)])  # of |p'|^2
         for u in sorted(float(root.real) for root in slopes if abs(root.imag) < 1e-7 and 1e-6 < root.real < 1 - 1e-6):
-            speed = math.hypot(*((a * u + b) * u + c)) / scale
-            if speed < 1e-6:
-                before, after = _halves(p, u)
-                before[2], after[1] = before[3], after[0]
-                return _bezier(before, tolerance, whole=False) + _bezier(after, tolerance, whole=False)
-            if speed < 0.05:
+            speed, bend = math.hypot(*((a * u + b) * u + c)), math.hypot(*(2 * a * u + b))
+            if bend * scale > 0 and (speed < 1e-6 * scale or speed * speed / bend < 1e-2 * tolerance):
+                return _cusp(p, u, (2 * a * u + b) / bend, tolerance)
+            if speed < 0.05 * scale:
                 breaks.insert(-1, u)
 
     def curve(u: Floats) -> tuple[Floats, Floats]:
@@ -387,11 +388,33 @@ def _bezier(p: Floats, tolerance: float, whole: bool = True) -> list[_Element]:
     return [_Element(p[0], p[3], t0, t1, curve=curve, breaks=breaks)]
 
 
+def _cusp(p: Floats, u: float, back: Floats, tolerance: float) -> list[_Element]:
+    """The parts of a Bézier before and after a cusp at u, which it leaves in the direction `back`; no tiny parts."""
+    parts = []
+    for half in _halves(p, u):
+        tiny = np.hypot(*(half - half[0]).T).max() <= 1e-2 * tolerance
+        parts.append([] if tiny else _bezier(half, tolerance, whole=False))
+    before, after = parts
+    if before and before[-1].curve is not None:
+        before[-1].t1 = -back
+    if after and after[0].curve is not None:
+        after[0].t0 = back
+    elements = before + after
+    if not elements:
+        return _lines([p[0], p[3]])
+    elements[0].p0, elements[-1].p1 = p[0], p[3]
+    return [
+        e for element in elements for e in (_lines([element.p0, element.p1]) if element.curve is None else [element])
+    ]
+
+
 def _turning_points(p: Floats, along: Floats, axis: Floats) -> list[Floats]:
     """Where a Bézier on a line through p[0] turns back; `along` (4,) are its control points' places on the line."""
     slope = [along[3] - 3 * along[2] + 3 * along[1], 2 * (along[2] - 2 * along[1]), along[1]]
     turns = []
-    for u in sorted(float(root.real) for root in np.roots(slope) if abs(root.imag) < 1e-7 and 0 < root.real < 1):
+    for u in sorted(
+        float(root.real) for root in np.roots(slope) if abs(root.imag) < 1e-7 and 1e-7 < root.real < 1 - 1e-7
+    ):
         place = ((along[3] * u + 3 * (1 - u) * along[2]) * u + 3 * (1 - u) ** 2 * along[1]) * u
         turns.append((place, slope[0] * 2 * u + slope[1]))
     size = float(np.abs(along).max())

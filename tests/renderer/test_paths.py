@@ -64,9 +64,10 @@ def hausdorff(chains: list[Chain], control: list[tuple[float, float]], count: in
     coarse = np.linspace(0, 1, count)
     samples = bezier(control, coarse)
     back = 0.0
-    for point in drawn:  # the nearest point of the lines between far denser samples, about the nearest few
-        near = coarse[np.argpartition(((samples - point) ** 2).sum(axis=1), 8)[:8]]
-        windows = [np.linspace(max(u - 1 / count, 0), min(u + 1 / count, 1), 101) for u in near]
+    for point in drawn:  # the nearest point of the lines between far denser samples, about each nearest one
+        apart = np.pad(((samples - point) ** 2).sum(axis=1), 1, constant_values=np.inf)
+        near = coarse[(apart[1:-1] <= apart[:-2]) & (apart[1:-1] <= apart[2:])]
+        windows = [np.linspace(max(u - 2 / count, 0), min(u + 2 / count, 1), 101) for u in near]
         a = bezier(control, np.concatenate(windows)).reshape(len(near), 101, 2)
         a, v = a[:, :-1], np.diff(a, axis=1)
         along = np.clip(((point - a) * v).sum(axis=2) / np.maximum((v**2).sum(axis=2), 1e-300), 0, 1)
