@@ -25,23 +25,20 @@ def create(settings: Settings | None = None) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        shop = routes.Shop(
+        ready = app.state.kernels_ready = threading.Event()
+
+        def prepare() -> None:
+            pipeline.warm_up()
+            ready.set()
+
+        shop = app.state.shop = routes.Shop(
             settings,
-            Renders(settings.renders, settings.queue, settings.time_limit),
+            Renders(settings.renders, settings.queue, settings.time_limit, prepare),
             MeshStore(settings.mesh_store),
             compiler.PatternCache(),
         )
-        app.state.shop = shop
-        app.state.kernels_ready = threading.Event()
-
-        def warm_up() -> None:
-            pipeline.warm_up()
-            app.state.kernels_ready.set()
-
         if settings.warm_up:
-            shop.renders.start(warm_up)
-        else:
-            app.state.kernels_ready.set()
+            shop.renders.warm_up()
         yield
         shop.renders.close()
 

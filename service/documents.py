@@ -28,7 +28,7 @@ class ProblemDocument(BaseModel):
 class Health(BaseModel):
     status: Literal["ok"]
     version: str
-    kernels: Literal["compiling", "ready"] = Field(description="the first render waits for them")
+    kernels: Literal["compiling", "ready"] = Field(description="the first render waits until they are ready")
     renders: int = Field(description="renders that run or wait now")
 
 

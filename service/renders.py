@@ -30,12 +30,15 @@ class ClientGone(Exception):
 class Renders:
     """A process-wide pool. Kernels run without the GIL, so the event loop goes on answering meanwhile."""
 
-    def __init__(self, workers: int, queue: int, time_limit: float) -> None:
+    def __init__(self, workers: int, queue: int, time_limit: float, prepare: Callable[[], object]) -> None:
+        """`prepare` loads the kernels, and returns at once when they are there. No work's time begins before."""
         self._places = workers + queue
         self._time_limit = time_limit
         self._taken = 0
         self._lock = threading.Lock()
         self._stops: set[threading.Event] = set()
+        self._prepare = prepare
+        self._preparing = threading.Lock()
         self._pool = ThreadPoolExecutor(workers, "render", initializer=_step_back)
 
     @property
@@ -43,9 +46,9 @@ class Renders:
         """How many run or wait."""
         return self._taken
 
-    def start(self, work: Callable[[], object]) -> None:
-        """Do `work` some time, for nobody in particular."""
-        self._pool.submit(work)
+    def warm_up(self) -> None:
+        """Prepare now, in the background."""
+        self._pool.submit(self._prepared)
 
     async def run(self, work: Callable[[Callable[[], bool]], T], request: Request) -> T:
         """What `work` gives. It is handed a function that says whether to stop: the client has gone, or the time is
@@ -66,6 +69,7 @@ class Renders:
             nonlocal deadline
             if stop.is_set():
                 raise Cancelled
+            self._prepared()
             deadline = time.monotonic() + self._time_limit
             return work(stopped)
 
@@ -96,6 +100,10 @@ class Renders:
         for stop in list(self._stops):
             stop.set()
         self._pool.shutdown(wait=False, cancel_futures=True)
+
+    def _prepared(self) -> None:
+        with self._preparing:
+            self._prepare()
 
     def _leave(self, stop: threading.Event) -> None:
         with self._lock:

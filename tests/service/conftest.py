@@ -80,6 +80,7 @@ class FakeRenderer:
 def fake(monkeypatch: pytest.MonkeyPatch) -> FakeRenderer:
     renderer = FakeRenderer()
     monkeypatch.setattr(pipeline, "render", renderer)
+    monkeypatch.setattr(pipeline, "warm_up", lambda: 0.0)
     return renderer
 
 

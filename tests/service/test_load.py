@@ -75,7 +75,7 @@ def test_health_during_two_renders_and_large_validations(scene: dict[str, Any]) 
     large = {**scene, "patterns": {"tiles": {"grooves": [groove] * 1000}}}
     small = {**scene, "camera": {**scene["camera"], "resolution": [4, 4]}}
     with open_server(dataclasses.replace(SETTINGS, renders=2)) as address:
-        assert httpx.post(f"{address}/api/render", json=small, timeout=120).status_code == 200  # kernels are there
+        assert httpx.post(f"{address}/api/render", json=small, timeout=400).status_code == 200  # kernels are there
         stop = threading.Event()
 
         def keep_on(path: str, body: dict[str, Any]) -> None:

@@ -5,17 +5,27 @@ from __future__ import annotations
 import dataclasses
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 
 import schema
 
-from .conftest import SETTINGS, assert_problem, open_client
+from .conftest import SETTINGS, FakeRenderer, assert_problem, open_client, wait_for
 
 
-def test_health(client: TestClient) -> None:
-    assert client.get("/api/health").json() == {"status": "ok", "version": "0.1.0", "kernels": "ready", "renders": 0}
+def test_health(fake: FakeRenderer, scene: dict[str, Any]) -> None:
+    with open_client() as client:
+        health = client.get("/api/health").json()
+        assert health == {"status": "ok", "version": "0.1.0", "kernels": "compiling", "renders": 0}
+        assert client.post("/api/render", json=scene).status_code == 200
+        assert client.get("/api/health").json() == {**health, "kernels": "ready"}
+
+
+def test_kernels_are_loaded_at_the_start(fake: FakeRenderer) -> None:
+    with open_client(dataclasses.replace(SETTINGS, warm_up=True)) as client:
+        wait_for(lambda: client.get("/api/health").json()["kernels"] == "ready")
 
 
 def test_schema_is_the_validation_tools(client: TestClient) -> None:
