@@ -131,7 +131,8 @@ def svg(d: str, flip_y: bool, tolerance: float) -> list[Chain]:
     """SVG path data (SVG 1.1, 8.3) as chains, one or more a subpath that draws anything; all commands.
 
     The data's coordinates are pattern coordinates, y up, as they stand; `flip_y` negates y. Lines and circular arcs
-    stay exact, Béziers and elliptical arcs become arcs within `tolerance`. Joints that turn by less than SNAP are
+    stay exact, Béziers and elliptical arcs become arcs within `tolerance` (it may be
+    infinite: as few arcs as can be). Joints that turn by less than SNAP are
     made smooth: curves take the tangent of a line or an arc that they meet, two curves meet in the mean, an arc that
     misses its neighbour's direction gives way and is fitted. Two lines keep even the slightest corner. `Z` closes.
 
@@ -348,13 +349,16 @@ def _bezier(p: Floats, tolerance: float, whole: bool = True) -> list[_Element]:
     A hairpin whose radius is below a hundredth of the tolerance counts as a cusp: two curves, in opposite directions.
     """
     p = p.copy()
+    tolerance = min(
+        tolerance, float(np.hypot(*(p - p[0]).T).max())
+    )  # a coarse tolerance leaves something of all curves
     for inner, outer in ((1, 0), (2, 3)):  # a handle this short would only make a hook of a thousandth of the tolerance
         if math.hypot(*(p[inner] - p[outer])) < 1e-3 * tolerance:
             p[inner] = p[outer]
     legs = p - p[0]
     sizes = np.hypot(*legs.T)
     scale = float(sizes.max())
-    if scale <= 1e-3 * tolerance:
+    if scale == 0:
         return _lines([p[0], p[3]])
     axis = legs[sizes.argmax()] / scale
     if np.abs(axis[0] * legs[:, 1] - axis[1] * legs[:, 0]).max() <= 1e-12 * scale:

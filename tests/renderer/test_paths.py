@@ -415,7 +415,7 @@ def test_any_cubic_stays_within_the_tolerance(
     chains = svg(d, False, tolerance)
     check(chains)
     if not chains:
-        assert max(math.dist(p0, p) for p in (p1, p2, p3)) <= 1e-3 * tolerance
+        assert p0 == p1 == p2 == p3
         return
     assert hausdorff(chains, [p0, p1, p2, p3], 120) <= tolerance * (1 + 1e-3) + 1e-9
     assert corners(chains[0])[0] == pytest.approx(p0)
@@ -472,6 +472,13 @@ def test_a_curve_needs_few_arcs() -> None:
     assert len(svg("M 1 0 C 1 0.5523 0.5523 1 0 1", False, 1e-3)[0].segments) == 2
     assert len(svg("M0 0 C 1 0 1 1 2 1", False, 1e-3)[0].segments) <= 12
     assert len(svg("M0 0 C 1 0 2 1 3 0", False, 100)[0].segments) == 2
+
+
+@pytest.mark.parametrize("d", ["M0 0 C 5 5 -5 5 0 0", "M0 0 C 1e-9 0 1e-9 1e-9 0 1e-9", "M0 0 A 2 1 30 1 0 1 1"])
+def test_the_coarsest_tolerance_leaves_something(d: str) -> None:
+    chains = svg(d, False, math.inf)
+    check(chains)
+    assert 1 <= sum(len(chain.segments) for chain in chains) <= 12
 
 
 def test_smooth_joints_are_smooth_and_corners_stay() -> None:
