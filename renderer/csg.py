@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of
-from renderer.geometry.solid import events, meet, normal_of
+from renderer.geometry.solid import NO, YES, events, meet, normal_of
 from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import kernel
 from renderer.shading import ambient, direction_to_pattern, light_to_pattern, lit_by, normal_to_world, to_world, unit
 from renderer.tables import CSG, Camera, Lighting, Pattern
 
-SHARED = 32  # up to so many pieces are found once for all samples of a footprint
-CAPACITY = 8192  # pieces near one stretch of a ray
+SHARED = np.int64(32)  # up to so many pieces are found once for all samples of a footprint
+CAPACITY = np.int64(8192)  # pieces near one stretch of a ray
 PROBE = 4  # `auto` begins with PROBE * PROBE samples
 
 
@@ -85,7 +85,7 @@ def csg(
                 u, v = (i % across + ju) / across, (i // across + jv) / down
                 p, q = on_plane(view, u, v)
                 gp, gq = (frame.eye[0] - p) / dw, (frame.eye[1] - q) / dw
-                m = meet(pattern, found, spans, shared, p, q, gp, gq, top, low - thin, CAPACITY, False)
+                m = meet(pattern, found, spans, shared, p, q, gp, gq, top, low - thin, NO)
                 at = max(m.w, low)
                 x, y = p + at * gp, q + at * gq
                 n = normal_of(pattern, found, m, x, y, gp, gq)
@@ -120,7 +120,7 @@ def csg(
                         if roof > at + thin:
                             s = meet(
                                 pattern, found, spans, shared, x - at * lp, y - at * lq, lp, lq,
-                                roof, at + thin, CAPACITY, True,
+                                roof, at + thin, YES,
                             )  # fmt: skip
                             if s.w > -math.inf:
                                 continue

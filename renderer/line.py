@@ -28,7 +28,7 @@ from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world,
 from renderer.tables import BASE, DIRECTIONAL, LINE, SEGMENT_METHOD, SMOOTH, Camera, Lighting
 from renderer.tables import Pattern as PatternTables
 
-CAPACITY = 2048  # pieces near a footprint; more are left to sampling
+CAPACITY = np.int64(2048)  # pieces near a footprint; more are left to sampling
 POINTS = 16384  # points of one merged cross-section
 
 # How the kernel treats what is not parallel, isolated and straight.
@@ -278,7 +278,7 @@ def line(
                         break
                 if s < 0.0 or s > piece.length:
                     continue
-            f, slope = scale_at(pattern, groove, piece, s)
+            f, slope = scale_at(pattern.scale_table, groove, piece, s)
             if mode == STRICT:
                 spread = max(-near_low, near_high)
                 across = min(width_high - width_low, most)

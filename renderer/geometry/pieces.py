@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.kernel import leaf
-from renderer.tables import SCALE_CONSTANT, SCALE_LINEAR, SCALE_SINE, Pattern
+from renderer.tables import SCALE_CONSTANT, SCALE_LINEAR, SCALE_SINE
 
 LEAST_SCALE = 1e-9  # a cross-section shrunk to a point keeps a direction
 
@@ -56,7 +56,7 @@ def point_at(piece: np.void, s: float) -> tuple[float, float]:
 
 
 @leaf
-def scale_at(pattern: Pattern, groove: np.void, piece: np.void, s: float) -> tuple[float, float]:
+def scale_at(scale_table: NDArray[np.float64], groove: np.void, piece: np.void, s: float) -> tuple[float, float]:
     """The scale of the cross-section at arc length s, placement included, and its derivative by s (1/pattern unit).
 
     Past the ends it keeps the end's value.
@@ -74,7 +74,7 @@ def scale_at(pattern: Pattern, groove: np.void, piece: np.void, s: float) -> tup
         value = 1.0 + groove.scale_a * math.sin(turns * t + groove.scale_c)
         slope = groove.scale_a * turns * math.cos(turns * t + groove.scale_c)
     else:
-        value, slope = interpolate(pattern.scale_table, groove.table_start, groove.table_count, t)
+        value, slope = interpolate(scale_table, groove.table_start, groove.table_count, t)
     return max(value, LEAST_SCALE) * piece.size, slope * rate * piece.size
 
 

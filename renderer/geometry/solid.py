@@ -20,21 +20,22 @@ from numpy.typing import NDArray
 from renderer.geometry.pieces import locate, point_at, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find
 from renderer.kernel import leaf
-from renderer.tables import CORNER, PROFILE, SCALE_CONSTANT, SCALE_LINEAR, SCALE_SINE, Pattern
+from renderer.tables import CORNER, PROFILE, SCALE_CONSTANT, SCALE_LINEAR, SCALE_SINE, Floats, Pattern
 
 CHORD = 1e-4
 CHORDS = 64  # at most this many chords for one crossing of a piece
 THIN = 1e-7  # solid thinner than this part of the pattern's height range is rounding, not matter
 EVENTS = 8192
 
-BAND, ADD, REMOVE = 0, 1, 2
+BAND, ADD, REMOVE = np.int64(0), np.int64(1), np.int64(2)
 
 # What a ray met (Meeting.facet), where it is not the number of a facet.
-PLANE = -1  # the base plane
-SIDE = -2  # a wall along the groove that no facet makes
-END = -3  # a wall across the groove: a flat end
+PLANE = np.int64(-1)  # the base plane
+SIDE = np.int64(-2)  # a wall along the groove that no facet makes
+END = np.int64(-3)  # a wall across the groove: a flat end
 
-BODY, CAP_START, CAP_FINISH = 0, 1, 2
+BODY, CAP_START, CAP_FINISH = np.int64(0), np.int64(1), np.int64(2)
+YES, NO = np.bool_(True), np.bool_(False)
 
 
 class Events(NamedTuple):
@@ -79,17 +80,14 @@ def put(e: Events, n: int, w: float, sign: int, kind: int, rank: int, facet: int
 
 @leaf
 def walk(
-    pattern: Pattern, groove: np.void, e: Events, n: int, owner: int, edge: int,
+    points: Floats, profile: np.void, rank: int, e: Events, n: int, owner: int, edge: int,
     w0: float, b0: float, f0: float, w1: float, b1: float, f1: float,
 ) -> int:  # fmt: skip
     """The events of a ray that falls from height w0 to w1 while its (b, scale) go linearly from (b0, f0) to (b1, f1).
 
     `edge` says what the wall is where the ray enters or leaves other than along the groove.
     """
-    profile = pattern.profiles[groove.profile]
-    points = pattern.points
     first, last = profile.start, profile.start + profile.count - 1
-    rank = groove.priority
     # where the ray is inside the band, the sides being linear in w
     enter, leave = 0.0, 1.0
     enter_facet = leave_facet = edge
@@ -180,7 +178,7 @@ def walk(
 
 @leaf
 def cut(
-    pattern: Pattern, groove: np.void, e: Events, n: int, owner: int,
+    points: Floats, profile: np.void, rank: int, e: Events, n: int, owner: int,
     w0: float, s0: float, b0: float, f0: float, w1: float, s1: float, b1: float, f1: float,
     begin_left: float, begin_right: float, length: float, end_left: float, end_right: float, caps: bool,
 ) -> int:  # fmt: skip
@@ -215,7 +213,7 @@ def cut(
                 high = max(low + (high - low) * at_low / (at_low - at_high), low)
         if low < high:
             n = walk(
-                pattern, groove, e, n, owner, END,
+                points, profile, rank, e, n, owner, END,
                 w0 + low * (w1 - w0), b0 + low * (b1 - b0), f0 + low * (f1 - f0),
                 w0 + high * (w1 - w0), b0 + high * (b1 - b0), f0 + high * (f1 - f0),
             )  # fmt: skip
@@ -223,10 +221,9 @@ def cut(
 
 
 @leaf
-def chords(pattern: Pattern, groove: np.void, piece: np.void, travel: float, closest: float) -> int:
+def chords(profile: np.void, groove: np.void, piece: np.void, travel: float, closest: float) -> int:
     """How many chords follow a ray along `travel` pattern units of a piece, `closest` to its centre of curvature."""
     count = 1.0
-    profile = pattern.profiles[groove.profile]
     if piece.curvature != 0.0:
         width = (profile.right - profile.left) * groove.scale_max * piece.size
         count = max(count, travel / math.sqrt(8.0 * max(closest, CHORD * width) * CHORD * width))
@@ -250,6 +247,7 @@ def meet_piece(
     piece = pattern.pieces[item]
     groove = pattern.grooves[piece.groove]
     profile = pattern.profiles[groove.profile]
+    points, rank = pattern.points, groove.priority
     most = groove.scale_max * piece.size
     left, right = profile.left * most, profile.right * most
     x0, y0 = p - dx + high * gp, q - dy + high * gq
@@ -278,7 +276,7 @@ def meet_piece(
                 t0, t1 = max(t0, min(ta, tb)), min(t1, max(ta, tb))
             if s0 != s1 and groove.scale_kind != SCALE_CONSTANT:
                 # a varying scale is linear between the ends alone
-                count = chords(pattern, groove, piece, abs(s1 - s0) * (t1 - t0), 1.0)
+                count = chords(profile, groove, piece, abs(s1 - s0) * (t1 - t0), 1.0)
                 if groove.scale_kind == SCALE_LINEAR and (min(s0, s1) < 0.0 or max(s0, s1) > piece.length):
                     count = CHORDS
             else:
@@ -287,20 +285,24 @@ def meet_piece(
                 for k in range(count):
                     a, c = t0 + (t1 - t0) * k / count, t0 + (t1 - t0) * (k + 1) / count
                     sa, sc = s0 + a * (s1 - s0), s0 + c * (s1 - s0)
-                    fa, _ = scale_at(pattern, groove, piece, sa)
-                    fc, _ = scale_at(pattern, groove, piece, sc)
+                    fa, _ = scale_at(pattern.scale_table, groove, piece, sa)
+                    fc, _ = scale_at(pattern.scale_table, groove, piece, sc)
                     n = cut(
-                        pattern, groove, e, n, 3 * found + BODY,
+                        points, profile, rank, e, n, 3 * found + BODY,
                         high + a * (low - high), sa, b0 + a * (b1 - b0), fa,
                         high + c * (low - high), sc, b0 + c * (b1 - b0), fc,
-                        begin_left, begin_right, piece.length, end_left, end_right, False,
+                        begin_left, begin_right, piece.length, end_left, end_right, NO,
                     )  # fmt: skip
         if piece.closed == 0 and capped:
             if piece.start_end == PROFILE and min(s0, s1) < 0.0:
-                n = meet_cap(pattern, groove, piece, e, n, found, CAP_START, ratio, -s0, b0, -s1, b1, high, low)
-            if piece.finish_end == PROFILE and max(s0, s1) > piece.length:
+                f, _ = scale_at(pattern.scale_table, groove, piece, 0.0)
                 n = meet_cap(
-                    pattern, groove, piece, e, n, found, CAP_FINISH, ratio,
+                    points, profile, rank, e, n, 3 * found + CAP_START, CAP_START, f, -s0, b0, -s1, b1, high, low
+                )
+            if piece.finish_end == PROFILE and max(s0, s1) > piece.length:
+                f, _ = scale_at(pattern.scale_table, groove, piece, piece.length)
+                n = meet_cap(
+                    points, profile, rank, e, n, 3 * found + CAP_FINISH, CAP_FINISH, f,
                     s0 - piece.length, -b0, s1 - piece.length, -b1, high, low,
                 )  # fmt: skip
         return n
@@ -341,21 +343,21 @@ def meet_piece(
             continue
         nearest = min(max(-h / a, t0), t1) if a > 0.0 else t0
         closest = math.hypot(ax + nearest * rx, ay + nearest * ry)
-        count = chords(pattern, groove, piece, math.sqrt(a) * (t1 - t0), closest)
+        count = chords(profile, groove, piece, math.sqrt(a) * (t1 - t0), closest)
         s0, b0 = locate(piece, x0 + t0 * rx, y0 + t0 * ry)
-        f0, _ = scale_at(pattern, groove, piece, s0)
+        f0, _ = scale_at(pattern.scale_table, groove, piece, s0)
         w0 = high + t0 * (low - high)
         for k in range(count):
             t = t0 + (t1 - t0) * (k + 1) / count
             s1, b1 = locate(piece, x0 + t * rx, y0 + t * ry)
-            f1, _ = scale_at(pattern, groove, piece, s1)
+            f1, _ = scale_at(pattern.scale_table, groove, piece, s1)
             w1 = high + t * (low - high)
             if piece.closed == 1:
-                n = walk(pattern, groove, e, n, 3 * found + BODY, SIDE, w0, b0, f0, w1, b1, f1)
+                n = walk(points, profile, rank, e, n, 3 * found + BODY, SIDE, w0, b0, f0, w1, b1, f1)
             elif abs(s1 - s0) <= math.pi * size:  # not across the far side, where s starts again
                 n = cut(
-                    pattern, groove, e, n, 3 * found + BODY, w0, s0, b0, f0, w1, s1, b1, f1,
-                    begin_left, begin_right, piece.length, end_left, end_right, False,
+                    points, profile, rank, e, n, 3 * found + BODY, w0, s0, b0, f0, w1, s1, b1, f1,
+                    begin_left, begin_right, piece.length, end_left, end_right, NO,
                 )  # fmt: skip
             s0, b0, f0, w0 = s1, b1, f1, w1
     if piece.closed == 0 and capped:
@@ -366,8 +368,10 @@ def meet_piece(
             tx, ty = tangent_at(piece, s)
             ex, ey = point_at(piece, s)
             out = -1.0 if end == 0 else 1.0
+            part = CAP_START if end == 0 else CAP_FINISH
+            f, _ = scale_at(pattern.scale_table, groove, piece, s)
             n = meet_cap(
-                pattern, groove, piece, e, n, found, CAP_START if end == 0 else CAP_FINISH, ratio,
+                points, profile, rank, e, n, 3 * found + part, part, f,
                 out * ((x0 - ex) * tx + (y0 - ey) * ty), -out * ((y0 - ey) * tx - (x0 - ex) * ty),
                 out * ((x1 - ex) * tx + (y1 - ey) * ty), -out * ((y1 - ey) * tx - (x1 - ex) * ty),
                 high, low,
@@ -377,22 +381,20 @@ def meet_piece(
 
 @leaf
 def meet_cap(
-    pattern: Pattern, groove: np.void, piece: np.void, e: Events, n: int, found: int, part: int, ratio: float,
+    points: Floats, profile: np.void, rank: int, e: Events, n: int, owner: int, part: int, f: float,
     b0: float, s0: float, b1: float, s1: float, high: float, low: float,
 ) -> int:  # fmt: skip
     """The events of the cap of a `profile` end: the profile's right half along a line square to the path.
 
     b is the distance past the end, s runs to the right of someone who leaves the path there.
     """
-    f, _ = scale_at(pattern, groove, piece, 0.0 if part == CAP_START else piece.length)
-    profile = pattern.profiles[groove.profile]
     left = -profile.left / profile.right if profile.left < 0.0 else 0.0
     if max(b0, b1) < 0.0 or min(b0, b1) > f * profile.right:
         return n
     # leaving by the finish, s > 0 is the path's right side; by the start, its left side
     begin, end = (-1.0, left) if part == CAP_FINISH else (-left, 1.0)
     return cut(
-        pattern, groove, e, n, 3 * found + part, high, s0, b0, f, low, s1, b1, f, begin, begin, 0.0, end, end, True
+        points, profile, rank, e, n, owner, high, s0, b0, f, low, s1, b1, f, begin, begin, 0.0, end, end, YES
     )
 
 
@@ -419,8 +421,8 @@ def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[floa
         facet, owner = PLANE, -1
         if not below and at <= 0.0:
             at = 0.0
-        if at < low:
-            break
+        if at <= low + thin:
+            break  # here spans end because the ray does
         if not below and at <= thin:
             below = True
         until = at - thin
@@ -438,7 +440,7 @@ def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[floa
 @leaf
 def meet(
     pattern: Pattern, found: Nearby, e: Events, count: int, p: float, q: float, gp: float, gq: float,
-    high: float, low: float, capacity: int, upwards: bool,
+    high: float, low: float, upwards: bool,
 ) -> Meeting:  # fmt: skip
     """Where the ray through (p, q) with slope (gp, gq) first enters the solid between the heights `high` and `low`.
 
@@ -461,11 +463,11 @@ def meet(
             pa, pc, qa, qc = p + a * gp, p + c * gp, q + a * gq, q + c * gq
             pieces = find(
                 pattern, found, min(pa, pc) - margin, min(qa, qc) - margin,
-                max(pa, pc) + margin, max(qa, qc) + margin, capacity,
+                max(pa, pc) + margin, max(qa, qc) + margin, len(found.piece),
             )  # fmt: skip
             if pieces < 0:
-                pieces = capacity
-        n = 0
+                pieces = len(found.piece)
+        n = np.int64(0)
         for i in range(pieces):
             n = meet_piece(
                 pattern, e, n, i, found.piece[i], found.shift[i, 0], found.shift[i, 1], p, q, gp, gq, a, c
@@ -492,7 +494,7 @@ def normal_of(
     if m.part == BODY:
         # past the ends of an arc the circle goes on
         tx, ty = tangent_at(piece, s)
-        f, slope = scale_at(pattern, groove, piece, s)
+        f, slope = scale_at(pattern.scale_table, groove, piece, s)
         bend = 1.0 - piece.curvature * b
     else:
         s = 0.0 if m.part == CAP_START else piece.length
@@ -500,7 +502,7 @@ def normal_of(
         if m.part == CAP_START:
             ux, uy = -ux, -uy
         tx, ty = uy, -ux
-        f, slope = scale_at(pattern, groove, piece, s)
+        f, slope = scale_at(pattern.scale_table, groove, piece, s)
         slope = 0.0
     bx, by = -ty, tx
     along = across = up = 0.0
