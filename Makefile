@@ -29,8 +29,10 @@ endif
 serve: $(STAMPS)/install $(PAGE)
 	$(BIN)/intaglio serve --host $(HOST) --port $(PORT)
 
-# pytest comes last: its summary is the last line.
+# The kernels are compiled once beforehand, not by each of pytest's processes. pytest comes last: its summary is the
+# last line.
 test: check $(CHECK_PAGE) $(PAGE) $(STAMPS)/chromium
+	$(BIN)/python -c 'from renderer import pipeline; pipeline.warm_up()'
 	$(BIN)/python -m pytest $(PYTEST)
 
 check: $(STAMPS)/dev
@@ -71,7 +73,7 @@ $(STAMPS)/dev: requirements/dev.txt $(STAMPS)/install
 
 # The system's node where it is new enough, otherwise the one that comes as a Python package.
 $(STAMPS)/node: requirements/node.txt | $(STAMPS)/venv
-	@if node -e 'process.exit(parseInt(process.versions.node) < 20)' 2>/dev/null && npm --version >/dev/null 2>&1; \
+	@if node -e 'process.exit(parseInt(process.versions.node) < 20 ? 1 : 0)' 2>/dev/null && npm --version >/dev/null 2>&1; \
 		then :; else echo "no node 20 here: installing it into $(VENV)"; $(PIP) --require-hashes -r $<; fi
 	@touch $@
 

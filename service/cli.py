@@ -21,7 +21,6 @@ from service.interrupts import Interruptible, Stopped
 
 if TYPE_CHECKING:
     from renderer.pipeline import Picture
-
     from schema import Problem, Report, Scene
 
 WRONG, UNREADABLE, STOPPED = 1, 2, 130  # exit codes; 0: all is well
