@@ -1,1 +1,3 @@
 """What people and programs talk to: the command line and the REST service."""
+
+COMPILING = "compiling the kernels, once after an install: about half a minute"

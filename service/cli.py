@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from service import outputs
+from service import COMPILING, outputs
 from service.interrupts import Interruptible, Stopped
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ WRONG, UNREADABLE, STOPPED = 1, 2, 130  # exit codes; 0: all is well
 SCENE_LIMIT = 64 << 20  # bytes of a scene file
 MESH_LIMIT = 1 << 30  # bytes of a mesh file
 AOVS = ("method",)
-COMPILING = "compiling the kernels, once after an install: about half a minute"
 
 app = typer.Typer(
     name="intaglio",

@@ -11,6 +11,8 @@ from collections.abc import Callable
 
 import uvicorn
 
+from renderer import pipeline
+from service import COMPILING
 from service.app import create
 from service.settings import Settings
 
@@ -30,6 +32,8 @@ def run(host: str, port: int, say: Callable[[str], None]) -> None:
     logging.getLogger("intaglio").setLevel(logging.INFO)
     name = f"[{host}]" if ":" in host else host
     say(f"intaglio: http://{name}:{listener.getsockname()[1]}/ (Ctrl-C stops it)")
+    if settings.warm_up and not pipeline.kernels_compiled():
+        say(COMPILING)
     config = uvicorn.Config(
         create(settings), log_level="warning", access_log=False, timeout_graceful_shutdown=3, server_header=False
     )
