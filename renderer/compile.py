@@ -269,6 +269,8 @@ def dress(pattern: schema.Pattern, traced: Paths) -> Compiled:
     half = np.maximum(np.abs(of["left"]), np.abs(of["right"])) * most
     mitre = np.maximum(np.abs(pieces["start_mitre"]), np.abs(pieces["finish_mitre"])).astype(float)
     ended = (pieces["start_end"] == PROFILE) | (pieces["finish_end"] == PROFILE)
+    pieces["half"] = np.nextafter(half.astype(np.float32), np.float32(np.inf))
+    pieces["ended"] = ended
     far = half * np.maximum(np.sqrt(1.0 + mitre**2), np.where(ended, math.sqrt(2.0), 1.0))
     lines = bool(np.all(pieces["curvature"] == 0.0))
     sine = pieces["tx"] * pieces["ty"][0] - pieces["ty"] * pieces["tx"][0] if len(pieces) else np.zeros(0)

@@ -17,14 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 import schema
-from renderer import CACHE, film, shading
+from renderer import CACHE, film, mesh, shading
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Tile, flat_frames, footprints
 from renderer.line import LOOSE, NOT_MINE, PAPER, STRICT, line
 from renderer.raycast import Caster
-from renderer.tables import BARE, BASE, Floats
+from renderer.tables import BARE, BASE, RECTANGLE, Floats, Pattern
+from renderer.trace import Solid, trace
 
 TILE = 64  # pixels
 METHODS = ("auto", "base", "segment", "line", "csg", "geometry")
@@ -60,6 +61,7 @@ class Frame:
     settings: Settings
     caster: Caster
     flat: dict[int, NDArray[np.void]]
+    solids: dict[int, Solid]
     albedo: Floats
     radiance: NDArray[np.float32]
     method: NDArray[np.uint8]
@@ -92,6 +94,8 @@ class Frame:
                 start = clock()
                 if pattern is BARE:
                     line(LOOSE, *rest)
+                elif settings.method == "geometry":
+                    trace(self.solids[row], settings.samples, settings.seed, *rest[1:])
                 elif settings.method == "csg":
                     csg(settings.samples, False, settings.seed, *rest)
                 else:
@@ -157,15 +161,43 @@ def _frame(compiled: CompiledScene, settings: Settings) -> Frame:
     caster = Caster(compiled.objects, compiled.triangles)
     width, height = compiled.resolution
     lit = bool(compiled.lighting.sky.any())
+    flat = flat_frames(caster, compiled.camera.origin)
     return Frame(
         scene=compiled,
         settings=settings,
         caster=caster,
-        flat=flat_frames(caster, compiled.camera.origin),
+        flat=flat,
+        solids=_solids(compiled, flat) if settings.method == "geometry" else {},
         albedo=shading.gloss_albedo(16, 48) if lit else np.zeros((2, 2, 2)),
         radiance=np.zeros((height, width, 3), np.float32),
         method=np.zeros((height, width), np.uint8),
     )
+
+
+def _solids(compiled: CompiledScene, flat: dict[int, NDArray[np.void]]) -> dict[int, Solid]:
+    """The solids of the flat objects that the camera sees, by row of OBJECT."""
+    solids = {}
+    for row, obj in enumerate(compiled.objects):
+        if obj["pattern"] < 0:
+            continue
+        if obj["shape"] != RECTANGLE:
+            raise RenderError(
+                Fault(f"/objects/{row}/shape/type", "a rectangle, as the method is geometry", "a curved shape")
+            )
+        if row not in flat:
+            continue
+        su, sv, du, dv = obj["mapping"]
+        pattern: Pattern = compiled.patterns[obj["pattern"]]
+        try:
+            solids[row] = Solid(*mesh.build(pattern, (du, dv, du + su, dv + sv), margin=_margin(pattern, (su, sv))))
+        except ValueError as error:
+            raise RenderError(Fault(f"/objects/{row}/pattern", "a pattern that can be meshed", str(error))) from None
+    return solids
+
+
+def _margin(pattern: Pattern, size: tuple[float, float]) -> float:
+    """How far the solid goes on past the object's edge, to be seen under it and to throw shadows, pattern units."""
+    return min(max(4.0 * pattern.reach, 8.0 * (pattern.height + pattern.depth)), max(size)) or 0.05 * max(size)
 
 
 def _tiles(

@@ -49,10 +49,11 @@ PIECE = np.dtype(
         ("start_mitre", "f4"),  # tan of half the turn at a CORNER, positive for a left turn: the piece begins
         ("finish_mitre", "f4"),  # at s = mitre * b and ends at s = length - mitre * b; 0 for other ends
         ("size", "f4"),  # scale of the whole cross-section given by the placement (scatter); 1 otherwise
+        ("half", "f4"),  # no |b| of the cross-section is larger anywhere along the piece, pattern units
         ("groove", "i4"),  # row of the GROOVE table
         ("start_end", "u1"), ("finish_end", "u1"),  # SMOOTH, CORNER, FLAT or PROFILE
         ("closed", "u1"),  # 1: a whole circle, no ends at all
-        ("_pad", "u1"),
+        ("ended", "u1"),  # 1: one of the ends is PROFILE, whose cap goes on past it
     ]
 )  # fmt: skip
 """A line or arc of a placed path. (s, b) are its local coordinates: s arc length from the start point, b the signed

@@ -469,9 +469,21 @@ def meet(
                 pieces = len(found.piece)
         n = np.int64(0)
         for i in range(pieces):
-            n = meet_piece(
-                pattern, e, n, i, found.piece[i], found.shift[i, 0], found.shift[i, 1], p, q, gp, gq, a, c
-            )
+            item = found.piece[i]
+            piece = pattern.pieces[item]
+            dx, dy = found.shift[i, 0], found.shift[i, 1]
+            if piece.curvature == 0.0:  # most are passed by: seen here, before the tables are handed on
+                x, y = p - dx - piece.x, q - dy - piece.y
+                b = y * piece.tx - x * piece.ty
+                turn = gq * piece.tx - gp * piece.ty
+                ba, bc = b + a * turn, b + c * turn
+                if ba > piece.half and bc > piece.half or ba < -piece.half and bc < -piece.half:
+                    if piece.ended == 0:
+                        continue
+                    s, rise = x * piece.tx + y * piece.ty, gp * piece.tx + gq * piece.ty
+                    if max(s + a * rise, s + c * rise) < piece.length and min(s + a * rise, s + c * rise) > 0.0:
+                        continue
+            n = meet_piece(pattern, e, n, i, item, dx, dy, p, q, gp, gq, a, c)
         w, facet, owner = first(e, n, a, c, thin)
         if w > -math.inf:
             return Meeting(w, facet, owner // 3 if owner >= 0 else -1, owner % 3 if owner >= 0 else 0)
