@@ -15,8 +15,8 @@ from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.solid import NO, YES, events, meet, normal_of
 from renderer.geometry.view import on_plane, view_of
-from renderer.kernel import kernel
-from renderer.shading import ambient, direction_to_pattern, light_to_pattern, lit_by, normal_to_world, to_world, unit
+from renderer.kernel import borrow, keep, kernel
+from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
 from renderer.tables import CSG, Camera, Lighting, Pattern
 
 SHARED = np.int64(32)  # up to so many pieces are found once for all samples of a footprint
@@ -35,8 +35,10 @@ def csg(
     samples: at least so many a footprint, in a grid of strata. slots: rows of `materials` for the pattern's facets,
     the object's own first.
     """
-    found = nearby(pattern, CAPACITY)
-    spans = events(pattern)
+    owned = nearby(pattern, CAPACITY), events(pattern)
+    found, spans = borrow(owned[0]), borrow(owned[1])
+    pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
+    materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
     lights = lighting.lights
     high, low = pattern.height, -pattern.depth
     thin = 1e-6 * (high - low) + 1e-300
@@ -136,3 +138,4 @@ def csg(
             if stage == 0 and alike:
                 break
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / taken, green / taken, blue / taken
+    keep(owned)

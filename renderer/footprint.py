@@ -7,17 +7,33 @@ is still looked at once. Footprints of the last level take what one random point
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.shapes import touching
-from renderer.raycast import Caster
 from renderer.tables import FOOTPRINT, FRAME, HIT, RECTANGLE, Camera, Floats, Ints
 
 LEVELS = 4  # splits of a pixel on an edge: 256 footprints at most
 SMOOTH_COSINE = 0.9  # normals within a footprint differ by less than about 25 degrees
+
+
+class Shapes(Protocol):
+    """What meets the camera's rays: `raycast.Caster`."""
+
+    objects: NDArray[np.void]
+
+    def hits(self, origin: Floats, directions: Floats) -> NDArray[np.void]:
+        """The nearest HIT (n,) of each ray from `origin` (3,) along `directions` (n, 3)."""
+
+    def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> NDArray[np.void]:
+        """The tangent FRAME (n,) at each of the hits."""
+
+    def blocked(
+        self, origin: Floats, directions: Floats, hits: NDArray[np.void], lights: NDArray[np.void]
+    ) -> NDArray[np.uint64]:
+        """For each hit (n,) a mask of the lights that something stands before."""
 
 
 class Tile(NamedTuple):
@@ -41,45 +57,52 @@ def rays(camera: Camera, x: Floats, y: Floats) -> Floats:
     return camera.corner + x[:, None] * camera.right + y[:, None] * camera.down
 
 
-def flat_frames(caster: Caster, origin: Floats) -> dict[int, NDArray[np.void]]:
+def flat_frames(shapes: Shapes, origin: Floats) -> dict[int, NDArray[np.void]]:
     """The one FRAME of each rectangle that the camera sees from the front, by row of OBJECT."""
     frames = {}
-    for row, obj in enumerate(caster.objects):
+    for row, obj in enumerate(shapes.objects):
         normal = obj["rotation"][:, 2]
         if obj["shape"] == RECTANGLE and float(normal @ (origin - obj["translation"])) > 0.0:
             hit = np.zeros(1, HIT)
             hit["object"], hit["t"], hit["u"], hit["v"], hit["normal"] = row, 1.0, 0.5, 0.5, normal
-            frames[row] = caster.frames(origin, (obj["translation"] - origin)[None, :], hit)
+            frames[row] = shapes.frames(origin, (obj["translation"] - origin)[None, :], hit)
     return frames
 
 
 def footprints(
-    caster: Caster, camera: Camera, lights: NDArray[np.void], tile: Tile, flat: dict[int, NDArray[np.void]], seed: int
+    shapes: Shapes, camera: Camera, lights: NDArray[np.void], tile: Tile, flat: dict[int, NDArray[np.void]], seed: int
 ) -> Footprints:
     """The footprints of a tile."""
-    ys, xs = np.mgrid[0 : tile.height + 1, 0 : tile.width + 1]
+    ys, xs = np.mgrid[0 : tile.height + 1, 0 : tile.width + 1]  # corners, shared by the pixels around
     corner_rays = rays(camera, (xs + tile.x).ravel().astype(float), (ys + tile.y).ravel().astype(float))
-    corners = caster.hits(camera.origin, corner_rays)
-    corner_mask = caster.blocked(camera.origin, corner_rays, corners, lights)
+    corners = shapes.hits(camera.origin, corner_rays)
+    corner_mask = shapes.blocked(camera.origin, corner_rays, corners, lights)
     x, y = (xs[:-1, :-1] + tile.x).ravel().astype(float), (ys[:-1, :-1] + tile.y).ravel().astype(float)
     pixel = np.arange(tile.width * tile.height, dtype=np.int32)
     wide = tile.width + 1
     first = (pixel // tile.width) * wide + pixel % tile.width
     around = np.stack([first, first + 1, first + wide, first + wide + 1])  # (4, n)
-    around_hits, around_mask = corners[around], corner_mask[around]
     size = 1.0
     done: list[Footprints] = []
     for level in range(LEVELS + 1):
-        at = 0.5 if level < LEVELS else _inside(x, y, seed)
-        middle_rays = rays(camera, x + size * at, y + size * at if level < LEVELS else y + size * _inside(y, x, seed))
-        middle = caster.hits(camera.origin, middle_rays)
-        mask = caster.blocked(camera.origin, middle_rays, middle, lights)
         if level < LEVELS:
-            smooth = touching(middle, mask, around_hits, around_mask, SMOOTH_COSINE)
+            middle_rays = rays(camera, x + 0.5 * size, y + 0.5 * size)
+        else:
+            middle_rays = rays(camera, x + size * _inside(x, y, seed), y + size * _inside(y, x, seed))
+        middle = shapes.hits(camera.origin, middle_rays)
+        mask = shapes.blocked(camera.origin, middle_rays, middle, lights)
+        if level < LEVELS:
+            smooth = touching(middle, mask, corners, corner_mask, around, SMOOTH_COSINE)
         else:
             smooth = np.ones(len(middle), np.bool_)
         keep = smooth & (middle["object"] >= 0)
-        done.append(_framed(caster, camera, flat, pixel[keep], x[keep], y[keep], size, middle_rays[keep], middle[keep], mask[keep]))
+        if keep.all():
+            keep = slice(None)
+        done.append(
+            _framed(
+                shapes, camera, flat, pixel[keep], x[keep], y[keep], size, middle_rays[keep], middle[keep], mask[keep]
+            )
+        )
         split = ~smooth
         if not split.any():
             break
@@ -91,9 +114,9 @@ def footprints(
             cx = np.concatenate([x, x + size, x, x + size])
             cy = np.concatenate([y, y, y + size, y + size])
             directions = rays(camera, cx, cy)
-            hits = caster.hits(camera.origin, directions)
-            around_hits = hits.reshape(4, -1)
-            around_mask = caster.blocked(camera.origin, directions, hits, lights).reshape(4, -1)
+            corners = shapes.hits(camera.origin, directions)
+            corner_mask = shapes.blocked(camera.origin, directions, corners, lights)
+            around = np.arange(len(corners)).reshape(4, -1)
     return _joined(done)
 
 
@@ -107,7 +130,7 @@ def _inside(x: Floats, y: Floats, seed: int) -> Floats:
 
 
 def _framed(
-    caster: Caster, camera: Camera, flat: dict[int, NDArray[np.void]], pixel: Ints, x: Floats, y: Floats, size: float,
+    shapes: Shapes, camera: Camera, flat: dict[int, NDArray[np.void]], pixel: Ints, x: Floats, y: Floats, size: float,
     directions: Floats, hits: NDArray[np.void], mask: NDArray[np.uint64],
 ) -> Footprints:  # fmt: skip
     """Footprints with the frames of their centres' hits; those of a rectangle share one."""
@@ -124,7 +147,7 @@ def _framed(
     count = int(rest.sum())
     out["frame"][rest] = len(shared) + np.arange(count)
     if count:
-        shared.append(caster.frames(camera.origin, directions[rest], hits[rest]))
+        shared.append(shapes.frames(camera.origin, directions[rest], hits[rest]))
     return Footprints(out, np.concatenate(shared) if shared else np.zeros(0, FRAME))
 
 

@@ -60,11 +60,16 @@ def _resolution(run: Floats, size: Floats, width: float) -> tuple[int, int]:
             if nx > 2 * finest[0] - 1 or ny > 2 * finest[1] - 1 or nx * ny > CELLS:
                 continue
             entries = n + total[0] * nx + total[1] * ny
-            looked = 1.0 + nx * width / size[0], 1.0 + ny * width / size[1]  # cells that a query of a groove's width sees
+            looked = (
+                1.0 + nx * width / size[0],
+                1.0 + ny * width / size[1],
+            )  # cells that a query of a groove's width sees
             # a piece is looked at once, however many of the cells list it
-            work = entries / (nx * ny) * looked[0] * looked[1] + 0.2 * looked[0] * looked[1] + ENTRY * (
-                entries + 0.5 * nx * ny
-            ) / n
+            work = (
+                entries / (nx * ny) * looked[0] * looked[1]
+                + 0.2 * looked[0] * looked[1]
+                + ENTRY * (entries + 0.5 * nx * ny) / n
+            )
             if work < best:
                 best, choice = work, (nx, ny)
     return choice

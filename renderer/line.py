@@ -2,34 +2,33 @@
 
 The cross-section is projected along B onto the base line, masked from the eye and shadowed from each light by the
 order of the projected points (000, eq. 4), and each visible, lit interval weighs as much of the footprint as it fills.
-Two changes to the papers, which `segment` leaves out and `line` makes (DESIGN 2.1, 2.2):
+Two changes to the papers, which `line` makes and `segment` does not (DESIGN 2.1, 2.2):
 
 - the eye and point lights project as points, not along one direction a pixel: exact under perspective;
 - an interval's weight is the exact area of the pixel's square between its two lines, not its length on a segment that
   stands for the footprint (000, eq. 3).
 
-An eye above the middle of the cross-section looks left and right at once: points are masked by those between them and
-the foot of the eye.
+Where nothing stands above the plane, grooves do not mask each other, and each is a cross-section of its own.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.pieces import locate, scale_at, tangent_at
-from renderer.geometry.query import find, nearby
-from renderer.geometry.share import share
+from renderer.geometry.query import Nearby, find, nearby
+from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, shifts, spans
 from renderer.geometry.view import View, on_plane, view_of
-from renderer.kernel import kernel, leaf
+from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world
-from renderer.tables import BASE, DIRECTIONAL, LINE, SEGMENT_METHOD, SMOOTH, Camera, Lighting
-from renderer.tables import Pattern as PatternTables
+from renderer.tables import BASE, DIRECTIONAL, LINE, SEGMENT_METHOD, SMOOTH, Camera, Floats, Lighting, Pattern
 
 CAPACITY = np.int64(2048)  # pieces near a footprint; more are left to sampling
-POINTS = 16384  # points of one merged cross-section
+POINTS = np.int64(16384)  # points of one cross-section
 
 # How the kernel treats what is not parallel, isolated and straight.
 STRICT = 0  # `auto`: mark it as not its own
@@ -41,407 +40,424 @@ NOT_MINE = 255  # in `method`: left to another method
 STRAIGHT = 0.02
 """How far, as a part of the footprint's width across the groove, a path may bend away from its tangent, and how much
 its scale may change, before it no longer counts as straight."""
-PARALLEL = 1e-6  # sine of the angle between grooves that count as parallel, for footprints of any length
+PARALLEL = 1e-6  # sine of the angle between grooves that count as parallel
+NEARLY_PARALLEL = 0.05  # ... in LOOSE and PAPER
 LEVEL = 1.001  # an eye or a light must stand this much higher than the highest ridge
 
+# A groove near the footprint.
+NEAR = np.dtype(
+    [
+        ("piece", "i8"),
+        ("start", "f8"), ("finish", "f8"),  # where its cross-section begins and ends along B, from the centre
+        ("axis", "f8"),  # where its path lies
+        ("turned", "f8"),  # -1: the path runs against T; else 1
+        ("scale", "f8"),
+    ]
+)  # fmt: skip
+
+
+class Work(NamedTuple):
+    """Memory of one thread, used again for each footprint."""
+
+    found: Nearby
+    near: NDArray[np.void]  # (CAPACITY,) NEAR, from left to right
+    b: Floats  # (POINTS,) the cross-section's points along B, from the centre
+    w: Floats  # (POINTS,) their heights
+    owner: NDArray[np.int64]  # (POINTS,) the groove of the facet after each point: its row in `near`, -1 the plane
+    facet: NDArray[np.int64]  # (POINTS,) which of the groove's facets that is
+    x: Floats  # (POINTS,) projections
+    low: Floats  # (POINTS,) the visible interval of each facet, on the base line
+    high: Floats
+    lit_low: Floats  # (lights, POINTS) the lit interval, on the light's base line
+    lit_high: Floats
+    light: Floats  # (lights, 4) D_b, D_w, h; 1 where it lights anything here
+    towards: Floats  # (lights, 2) shift along p and q for a unit of height to each light
+    tint: Floats  # (2 facets + 1, lights + 1, 3) radiance of a facet under each light, then under the sky
+    tinted: NDArray[np.int64]  # (2 facets + 1,) the footprint for which `tint` holds
+
 
 @leaf
-def onto_base(b: float, w: float, db: float, dw: float, h: float) -> float:
-    """The point (b, w) of the cross-section projected from D = (db, dw, h) onto w = 0 (DESIGN 2.1)."""
-    if h == 0.0:
-        return b - w * db / dw
-    return db + (b - db) * dw / (dw - w)
+def work_for(pattern: Pattern, lights: int) -> Work:
+    facets = len(pattern.facet_slot)
+    return Work(
+        nearby(pattern, CAPACITY), np.empty(CAPACITY, NEAR), np.empty(POINTS), np.empty(POINTS),
+        np.empty(POINTS, np.int64), np.empty(POINTS, np.int64), np.empty(POINTS), np.empty(POINTS), np.empty(POINTS),
+        np.empty((lights, POINTS)), np.empty((lights, POINTS)), np.empty((lights, 4)), np.empty((lights, 2)),
+        np.empty((2 * facets + 1, lights + 1, 3)), np.full(2 * facets + 1, -1, np.int64),
+    )  # fmt: skip
+
+
+class Reach(NamedTuple):
+    """The frame of parallel grooves at the footprint's centre, and how far around it matters; pattern units."""
+
+    tx: float  # T; B is (-ty, tx)
+    ty: float
+    eye_t: float  # shift along T and B for a unit of height towards the eye
+    eye_b: float
+    low: float  # the footprint along B
+    high: float
+    wide_low: float  # ... with what is seen through it, or shades that
+    wide_high: float
+    long_low: float  # the same along T
+    long_high: float
 
 
 @leaf
-def foot_of(db: float, h: float) -> float:
-    """Where the eye or light stands on the base line: at an end of it for a direction."""
-    if h == 0.0:
-        return math.inf if db > 0.0 else -math.inf
-    return db
+def meet_lights(pattern: Pattern, frame: np.void, view: View, blocked: np.uint64, lights: NDArray, work: Work) -> bool:
+    """Fill `work.light` (D_b is left to `turn_lights`) and `work.towards`; False: a light stands among the ridges."""
+    clear = True
+    for l in range(len(lights)):
+        d = light_to_pattern(frame, lights[l])
+        work.light[l, 1], work.light[l, 2] = d[2], d[3]
+        work.towards[l, 0] = work.towards[l, 1] = 0.0
+        above = d[2] > LEVEL * pattern.height * d[3] and d[2] > 0.0
+        work.light[l, 3] = 1.0 if above and (blocked >> np.uint64(l)) & np.uint64(1) == 0 else 0.0
+        if above:
+            work.towards[l, 0] = (d[0] - d[3] * view.p) / d[2]
+            work.towards[l, 1] = (d[1] - d[3] * view.q) / d[2]
+        elif d[2] > 0.0:
+            clear = False
+    return clear
 
 
 @leaf
-def spans(
-    b: NDArray[np.float64], x: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64],
-    count: int, foot: float,
-) -> None:  # fmt: skip
-    """The visible interval (low, high) of each facet between projected points x; low >= high: hidden (000, eq. 4).
+def turn_lights(frame: np.void, view: View, bx: float, by: float, lights: NDArray, paper: bool, work: Work) -> None:
+    """Complete `work.light`: each light in the plane of the cross-section."""
+    for l in range(len(lights)):
+        d = light_to_pattern(frame, lights[l])
+        work.light[l, 0] = (d[0] - d[3] * view.p) * bx + (d[1] - d[3] * view.q) * by
+        if paper:  # one direction a pixel
+            work.light[l, 2] = 0.0
 
-    b, x: (count,) points from left to right; low, high: (count - 1,).
+
+@leaf
+def find_around(pattern: Pattern, view: View, eye_p: float, eye_q: float, work: Work) -> int:
+    """Find the pieces whose cross-sections may be seen through the footprint, or stand in its light."""
+    lp, hp, lq, hq = 0.0, 0.0, 0.0, 0.0
+    for k in range(4):
+        p, q = on_plane(view, float(k & 1), float(k >> 1))
+        lp, hp, lq, hq = min(lp, p - view.p), max(hp, p - view.p), min(lq, q - view.q), max(hq, q - view.q)
+    if pattern.height > 0.0:
+        lp, hp = shifts(pattern.height, 0.0, eye_p, 0.0, lp, hp)
+        lq, hq = shifts(pattern.height, 0.0, eye_q, 0.0, lq, hq)
+        for l in range(len(work.light)):
+            lp, hp = shifts(pattern.height, 0.0, eye_p, work.towards[l, 0], lp, hp)
+            lq, hq = shifts(pattern.height, 0.0, eye_q, work.towards[l, 1], lq, hq)
+    m = pattern.reach
+    return find(pattern, work.found, view.p + lp - m, view.q + lq - m, view.p + hp + m, view.q + hq + m, CAPACITY)
+
+
+@leaf
+def direction(pattern: Pattern, found: Nearby, count: int, view: View) -> tuple[float, float]:
+    """The tangent of the path that runs nearest to the footprint's centre."""
+    nearest = math.inf
+    tx, ty = 1.0, 0.0
+    for k in range(count):
+        piece = pattern.pieces[found.piece[k]]
+        s, b = locate(piece, view.p - found.shift[k, 0], view.q - found.shift[k, 1])
+        past = 0.0 if piece.closed == 1 else max(0.0, -s, s - piece.length)
+        if abs(b) + past < nearest:
+            nearest = abs(b) + past
+            tx, ty = tangent_at(piece, s if piece.closed == 1 else min(max(s, 0.0), piece.length))
+    return tx, ty
+
+
+@leaf
+def reach_along(pattern: Pattern, view: View, eye_p: float, eye_q: float, tx: float, ty: float, work: Work) -> Reach:
+    """How far what matters to the footprint lies, along T and B.
+
+    Inside a groove a ray gets no deeper than the groove's width lets it, which bounds how far it goes on below.
     """
-    farthest = -math.inf
-    for i in range(count - 1):  # to the right of the foot the points on the left mask
-        low[i], high[i] = x[i], x[i + 1]
-        if b[i] >= foot:
-            farthest = max(farthest, x[i])
-            low[i] = farthest
-    farthest = math.inf
-    for i in range(count - 2, -1, -1):
-        if b[i + 1] <= foot:
-            farthest = min(farthest, x[i + 1])
-            high[i] = farthest
+    bx, by = -ty, tx
+    low = high = long_low = long_high = 0.0
+    for k in range(4):
+        p, q = on_plane(view, float(k & 1), float(k >> 1))
+        across, on = (p - view.p) * bx + (q - view.q) * by, (p - view.p) * tx + (q - view.q) * ty
+        low, high = min(low, across), max(high, across)
+        long_low, long_high = min(long_low, on), max(long_high, on)
+    eye_b, eye_t = eye_p * bx + eye_q * by, eye_p * tx + eye_q * ty
+    room = 2.0 * pattern.width
+    deep = pattern.depth if abs(eye_b) * pattern.depth <= room else room / abs(eye_b)
+    wide_low, wide_high = shifts(pattern.height, deep, eye_b, 0.0, low, high)
+    long_low, long_high = shifts(pattern.height, deep, eye_t, 0.0, long_low, long_high)
+    for l in range(len(work.light)):
+        if work.light[l, 3] != 0.0:
+            light_b = work.towards[l, 0] * bx + work.towards[l, 1] * by
+            light_t = work.towards[l, 0] * tx + work.towards[l, 1] * ty
+            below = deep if abs(light_b) * deep <= room else room / abs(light_b)
+            wide_low, wide_high = shifts(pattern.height, below, eye_b, light_b, wide_low, wide_high)
+            long_low, long_high = shifts(pattern.height, below, eye_t, light_t, long_low, long_high)
+    return Reach(tx, ty, eye_t, eye_b, low, high, wide_low, wide_high, long_low, long_high)
 
 
 @leaf
-def fraction_at(x: float, b0: float, w0: float, b1: float, w1: float, db: float, dw: float, h: float) -> float:
-    """Where on the facet from (b0, w0) to (b1, w1) the point lies that D projects to x: 0 at its start, 1 at its end."""
-    if h == 0.0:
-        x0, x1 = onto_base(b0, w0, db, dw, h), onto_base(b1, w1, db, dw, h)
-        return (x - x0) / (x1 - x0)
-    c = (x - db) / dw
-    return (c * (dw - w0) - (b0 - db)) / (b1 - b0 + c * (w1 - w0))
+def find_within(pattern: Pattern, view: View, r: Reach, work: Work) -> int:
+    """Find the pieces whose cross-sections may reach anything that matters to the footprint."""
+    bx, by = -r.ty, r.tx
+    p0 = view.p + min(r.long_low * r.tx, r.long_high * r.tx) + min(r.wide_low * bx, r.wide_high * bx) - pattern.reach
+    p1 = view.p + max(r.long_low * r.tx, r.long_high * r.tx) + max(r.wide_low * bx, r.wide_high * bx) + pattern.reach
+    q0 = view.q + min(r.long_low * r.ty, r.long_high * r.ty) + min(r.wide_low * by, r.wide_high * by) - pattern.reach
+    q1 = view.q + max(r.long_low * r.ty, r.long_high * r.ty) + max(r.wide_low * by, r.wide_high * by) + pattern.reach
+    return find(pattern, work.found, p0, q0, p1, q1, CAPACITY)
 
 
 @leaf
-def shifts(height: float, depth: float, eye: float, light: float, lowest: float, highest: float) -> tuple[float, float]:
-    """[lowest, highest] widened to the shifts along one axis from a footprint to what is seen through it at heights
-    -depth .. height, and on to what may shade that.
+def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work: Work) -> int:
+    """Fill `work.near` with the grooves that run along T, from left to right: how many.
 
-    `eye` and `light`: the shift for a unit of height towards each, pattern units.
+    strict: -1 where anything in reach is not parallel, ends, bends or changes its scale too much, or overlaps.
     """
-    deep, high = -depth * eye, height * eye
-    lit = deep + (height + depth) * light
-    return min(lowest, deep, high, lit), max(highest, deep, high, lit)
+    found = work.found
+    n = 0
+    spread = max(-r.long_low, r.long_high) + max(-r.wide_low, r.wide_high)
+    length = max(-r.long_low, r.long_high)
+    # Whose cross-sections must be known: where nothing stands above the plane, those inside the footprint alone.
+    low, high = (r.low, r.high) if pattern.height == 0.0 else (r.wide_low, r.wide_high)
+    for k in range(count):
+        piece = pattern.pieces[found.piece[k]]
+        groove = pattern.grooves[piece.groove]
+        profile = pattern.profiles[groove.profile]
+        s, b = locate(piece, view.p - found.shift[k, 0], view.q - found.shift[k, 1])
+        ux, uy = tangent_at(piece, s if piece.closed == 1 else min(max(s, 0.0), piece.length))
+        sine, cosine = r.tx * uy - r.ty * ux, r.tx * ux + r.ty * uy
+        bend = spread * spread * abs(piece.curvature)
+        if abs(b) > spread + piece.half + bend and (piece.closed == 1 or piece.curvature == 0.0):
+            continue
+        if abs(sine) > (PARALLEL if strict else NEARLY_PARALLEL):
+            if strict:
+                return -1
+            continue
+        sign = 1.0 if cosine >= 0.0 else -1.0
+        if piece.closed == 0:
+            s0 = s + (r.long_low if sign > 0.0 else -r.long_high)
+            s1 = s + (r.long_high if sign > 0.0 else -r.long_low)
+            if s1 < -pattern.reach or s0 > piece.length + pattern.reach:
+                continue
+            if strict and (
+                (s0 < 0.0 and piece.start_end != SMOOTH) or (s1 > piece.length and piece.finish_end != SMOOTH)
+            ):
+                return -1
+            if s < 0.0 or s > piece.length:
+                continue  # the next piece takes it on
+        f, slope = scale_at(pattern.scale_table, groove, piece, s)
+        if strict:
+            across = min(r.high - r.low, piece.half)
+            if 0.5 * length * length * abs(piece.curvature) > STRAIGHT * across:
+                return -1
+            if abs(slope) * max(length, pattern.depth, piece.half) > STRAIGHT * f:
+                return -1
+        start = -sign * b + f * (profile.left if sign > 0.0 else -profile.right)
+        finish = -sign * b + f * (profile.right if sign > 0.0 else -profile.left)
+        if finish <= low or start >= high or finish <= start:
+            continue
+        at = n
+        while at > 0 and (
+            work.near[at - 1].start > start
+            or (work.near[at - 1].start == start and work.near[at - 1].piece > found.piece[k])
+        ):
+            work.near[at] = work.near[at - 1]
+            at -= 1
+        g = work.near[at]
+        g.piece, g.start, g.finish = found.piece[k], start, finish
+        g.axis, g.turned, g.scale = -sign * b, sign, f
+        n += 1
+    if strict:
+        for k in range(1, n):
+            g = work.near[k]
+            if g.start < work.near[k - 1].finish - 1e-9 * (g.finish - g.start):
+                return -1
+    return n
 
 
 @leaf
-def along(view: View, bx: float, by: float, y: float) -> float:
-    """The share of the footprint where B . x <= y."""
-    return share(
-        bx * view.pu + by * view.qu - y * view.wu,
-        bx * view.pv + by * view.qv - y * view.wv,
-        bx * view.p1 + by * view.q1 - y * view.w1,
-    )
+def lay(pattern: Pattern, r: Reach, first: int, last: int, work: Work) -> int:
+    """Lay out the cross-section of the grooves first <= g < last: the number of its points.
+
+    With ridges the plane between and around the grooves is part of it.
+    """
+    b, w = work.b, work.w
+    n = 0
+    ridged = pattern.height > 0.0
+    if ridged:
+        b[0], w[0] = min(r.wide_low, work.near[first].start) - 1.0 - (r.wide_high - r.wide_low), 0.0
+        work.owner[0] = work.facet[0] = -1
+        n = 1
+    for g in range(first, last):
+        near = work.near[g]
+        profile = pattern.profiles[pattern.grooves[pattern.pieces[near.piece].groove].profile]
+        if n + profile.count + 1 >= POINTS:
+            break
+        for i in range(profile.count):
+            j = i if near.turned > 0.0 else profile.count - 1 - i
+            place = near.axis + near.turned * near.scale * pattern.points[profile.start + j, 0]
+            if n > 0 and place <= b[n - 1]:
+                place = b[n - 1]
+                if i == 0 and w[n - 1] == 0.0:
+                    n -= 1  # grooves that touch share a point
+            b[n], w[n] = place, near.scale * pattern.points[profile.start + j, 1]
+            work.owner[n] = g
+            work.facet[n] = j if near.turned > 0.0 else j - 1
+            n += 1
+        work.owner[n - 1] = work.facet[n - 1] = -1
+    if ridged:
+        b[n], w[n] = max(r.wide_high, b[n - 1]) + 1.0 + (r.wide_high - r.wide_low), 0.0
+        n += 1
+    return n
+
+
+@leaf
+def tint_of(
+    index: int, i: int, distant: bool, pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float, eye_h: float,
+    lighting: Lighting, materials: NDArray, slots: NDArray, albedo: Floats, work: Work,
+) -> int:  # fmt: skip
+    """The row of `work.tint` with the colours of facet i, found once a footprint where all lights are far."""
+    row, slot = -1, 0
+    if work.owner[i] >= 0:
+        near = work.near[work.owner[i]]
+        where = pattern.grooves[pattern.pieces[near.piece].groove].slot + work.facet[i]
+        slot = pattern.facet_slot[where] + 1
+        row = 2 * where + (1 if near.turned > 0.0 else 0)
+    if distant and work.tinted[row] == index:
+        return row
+    work.tinted[row] = index
+    lights = lighting.lights
+    b0, w0, b1, w1 = work.b[i], work.w[i], work.b[i + 1], work.w[i + 1]
+    bx, by = -r.ty, r.tx
+    # the middle of what is seen of it
+    middle = 0.5 * (max(work.low[i], r.low) + min(work.high[i], r.high))
+    u = min(max(fraction_at(middle, b0, w0, b1, w1, eye_d, frame.eye[2], eye_h), 0.0), 1.0)
+    b, w = b0 + u * (b1 - b0), w0 + u * (w1 - w0)
+    t = r.eye_t * w
+    at = to_world(frame, view.p + b * bx + t * r.tx, view.q + b * by + t * r.ty, w)
+    n = normal_to_world(frame, (-(w1 - w0) * bx, -(w1 - w0) * by, b1 - b0))
+    e = (view.ex, view.ey, view.ez)
+    material = materials[slots[slot]]
+    for l in range(len(lights)):
+        work.tint[row, l, 0], work.tint[row, l, 1], work.tint[row, l, 2] = lit_by(lights[l], material, n, e, at)
+    colour = ambient(material, lighting.sky, albedo, n, e)
+    work.tint[row, len(lights), 0], work.tint[row, len(lights), 1], work.tint[row, len(lights), 2] = colour
+    return row
+
+
+@leaf
+def weight(paper: bool, view: View, bx: float, by: float, centre: float, half: float, low: float, high: float) -> float:
+    """The share of the footprint between two places along B: of its area, or of the papers' segment [-half, half]."""
+    if paper:
+        return (min(max(high, -half), half) - min(max(low, -half), half)) / (2.0 * half)
+    return along(view, bx, by, centre + high) - along(view, bx, by, centre + low)
 
 
 @kernel
 def line(
-    mode: int, pattern: PatternTables, footprints: NDArray[np.void], chosen: NDArray[np.int64],
+    mode: int, pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64],
     frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void],
-    slots: NDArray[np.int32], albedo: NDArray[np.float64], radiance: NDArray[np.float64], method: NDArray[np.uint8],
+    slots: NDArray[np.int32], albedo: Floats, radiance: Floats, method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance (n, 3) and the method each took.
 
     mode: STRICT, LOOSE or PAPER. slots: rows of `materials` for the pattern's facets, the object's own first.
     """
+    owned = work_for(pattern, len(lighting.lights))
+    work, pattern, frames, lighting = borrow(owned), borrow(pattern), borrow(frames), borrow(lighting)
+    camera, materials, slots, albedo = borrow(camera), borrow(materials), borrow(slots), borrow(albedo)
     lights = lighting.lights
-    found = nearby(pattern, CAPACITY)
-    near = np.empty(CAPACITY, np.int64)  # the found pieces that count, from left to right
-    start = np.empty(CAPACITY)  # where their cross-sections begin along B, from the footprint's centre
-    finish = np.empty(CAPACITY)
-    axis = np.empty(CAPACITY)  # where their paths lie
-    turned = np.empty(CAPACITY)  # -1: the path runs against T
-    scale = np.empty(CAPACITY)
-    b, w = np.empty(POINTS), np.empty(POINTS)
-    owner, facet = np.empty(POINTS, np.int64), np.empty(POINTS, np.int64)
-    x, low, high = np.empty(POINTS), np.empty(POINTS), np.empty(POINTS)
-    lit_low, lit_high = np.empty((len(lights), POINTS)), np.empty((len(lights), POINTS))
-    shadow = np.empty((len(lights), 4))  # each light in the cross-section: D_b, D_w, h, usable
-    towards = np.empty((len(lights), 2))  # shift along p and q for a unit of height to each light
-    facets = len(pattern.facet_slot)
-    tint = np.empty((2 * facets + 1, len(lights) + 1, 3))  # radiance of a facet under each light, then the sky
-    tinted = np.full(2 * facets + 1, -1, np.int64)
+    strict, paper = mode == STRICT, mode == PAPER
     distant = True
     for l in range(len(lights)):
         distant = distant and lights[l].kind == DIRECTIONAL
-    flat = pattern.height == 0.0
-
+    ridged = pattern.height > 0.0
     for index in chosen:
         footprint = footprints[index]
         frame = frames[footprint.frame]
         view = view_of(footprint, frame, camera)
-        e = (view.ex, view.ey, view.ez)
-        dw = frame.eye[2]
-        eye_p, eye_q = (frame.eye[0] - view.p) / dw, (frame.eye[1] - view.q) / dw
-        radiance[index, 0] = radiance[index, 1] = radiance[index, 2] = 0.0
+        eye_w = frame.eye[2]
         method[index] = NOT_MINE
-        if dw <= LEVEL * pattern.height:
-            if mode == STRICT:
-                continue
-        # The footprint's bounds, and those of what may be seen through it or shade it.
-        p0 = p1 = view.p
-        q0 = q1 = view.q
-        for k in range(4):
-            cp, cq = on_plane(view, float(k & 1), float(k >> 1))
-            p0, p1, q0, q1 = min(p0, cp), max(p1, cp), min(q0, cq), max(q1, cq)
-        mine = True
-        lp, lq = p0 - view.p, q0 - view.q
-        hp, hq = p1 - view.p, q1 - view.q
-        for l in range(len(lights)):
-            d = light_to_pattern(frame, lights[l])
-            rise = d[2] if d[3] == 0.0 else d[2] - pattern.height
-            shadow[l, 1], shadow[l, 2], shadow[l, 3] = d[2], d[3], 1.0
-            if d[2] <= LEVEL * pattern.height * d[3] or d[2] <= 0.0:
-                # below the plane: nothing is lit; between the ridges: left to sampling
-                shadow[l, 3] = 0.0
-                mine = mine and d[2] <= 0.0
-                towards[l, 0] = towards[l, 1] = 0.0
-                continue
-            towards[l, 0], towards[l, 1] = (d[0] - d[3] * view.p) / d[2], (d[1] - d[3] * view.q) / d[2]
-            if rise > 0.0 and not flat:
-                lp, hp = shifts(pattern.height, 0.0, eye_p, towards[l, 0], lp, hp)
-                lq, hq = shifts(pattern.height, 0.0, eye_q, towards[l, 1], lq, hq)
-        if not mine and mode == STRICT:
+        clear = meet_lights(pattern, frame, view, footprint.blocked, lights, work)
+        if strict and (not clear or eye_w <= LEVEL * pattern.height):
             continue
-        if not flat:
-            lp, hp = shifts(pattern.height, 0.0, eye_p, 0.0, lp, hp)
-            lq, hq = shifts(pattern.height, 0.0, eye_q, 0.0, lq, hq)
-        margin = pattern.reach
-        count = find(
-            pattern, found, view.p + lp - margin, view.q + lq - margin, view.p + hp + margin, view.q + hq + margin, CAPACITY
-        )
-        if count < 0 and mode == STRICT:
+        eye_p, eye_q = (frame.eye[0] - view.p) / eye_w, (frame.eye[1] - view.q) / eye_w
+        count = find_around(pattern, view, eye_p, eye_q, work)
+        if strict and count < 0:
             continue
-        count = max(count, 0)
+        tx, ty = direction(pattern, work.found, count, view)
+        r = reach_along(pattern, view, eye_p, eye_q, tx, ty, work)
+        if strict and count > 0 and not pattern.parallel:
+            count = find_within(pattern, view, r, work)
+            if count < 0:
+                continue
+        grooves = pick(strict, pattern, view, r, count, work)
+        if grooves < 0:
+            continue
+        method[index] = BASE if grooves == 0 else SEGMENT_METHOD if paper else LINE
 
-        # The common direction: the path's nearest to the centre.
-        nearest = math.inf
-        tx, ty = 1.0, 0.0
-        for k in range(count):
-            piece = pattern.pieces[found.piece[k]]
-            s, distance = locate(piece, view.p - found.shift[k, 0], view.q - found.shift[k, 1])
-            past = max(0.0, -s, s - piece.length) if piece.closed == 0 else 0.0
-            if abs(distance) + past < nearest:
-                nearest = abs(distance) + past
-                tx, ty = tangent_at(piece, s if piece.curvature == 0.0 else min(max(s, 0.0), piece.length))
         bx, by = -ty, tx
-        width_low = width_high = length_low = length_high = 0.0
-        for k in range(4):
-            cp, cq = on_plane(view, float(k & 1), float(k >> 1))
-            across, on = (cp - view.p) * bx + (cq - view.q) * by, (cp - view.p) * tx + (cq - view.q) * ty
-            width_low, width_high = min(width_low, across), max(width_high, across)
-            length_low, length_high = min(length_low, on), max(length_high, on)
-        eye_b, eye_t = eye_p * bx + eye_q * by, eye_p * tx + eye_q * ty
-        near_low, near_high = length_low, length_high  # along T: what the footprint may see or be shaded by
-        wide_low, wide_high = width_low, width_high
-        if mode == STRICT and count > 0:
-            room = 2.0 * pattern.width  # a ray inside a groove gets no deeper than the groove's width lets it
-            deep = min(pattern.depth, room / abs(eye_b)) if eye_b != 0.0 else pattern.depth
-            near_low, near_high = shifts(pattern.height, deep, eye_t, 0.0, near_low, near_high)
-            wide_low, wide_high = shifts(pattern.height, deep, eye_b, 0.0, wide_low, wide_high)
-            for l in range(len(lights)):
-                if shadow[l, 3] != 0.0:
-                    light_b = towards[l, 0] * bx + towards[l, 1] * by
-                    light_t = towards[l, 0] * tx + towards[l, 1] * ty
-                    below = min(deep, room / abs(light_b)) if light_b != 0.0 else deep
-                    near_low, near_high = shifts(pattern.height, below, eye_t, light_t, near_low, near_high)
-                    wide_low, wide_high = shifts(pattern.height, below, eye_b, light_b, wide_low, wide_high)
-            if not pattern.parallel:
-                cp0 = view.p + min(near_low * tx, near_high * tx) + min(wide_low * bx, wide_high * bx) - margin
-                cp1 = view.p + max(near_low * tx, near_high * tx) + max(wide_low * bx, wide_high * bx) + margin
-                cq0 = view.q + min(near_low * ty, near_high * ty) + min(wide_low * by, wide_high * by) - margin
-                cq1 = view.q + max(near_low * ty, near_high * ty) + max(wide_low * by, wide_high * by) + margin
-                count = find(pattern, found, cp0, cq0, cp1, cq1, CAPACITY)
-                if count < 0:
-                    continue
-        far_low, far_high = width_low, width_high  # along B: whose cross-sections must be merged
-        if not flat:
-            far_low, far_high = wide_low, wide_high
-            if mode != STRICT:
-                far_low, far_high = shifts(pattern.height, 0.0, eye_b, 0.0, far_low, far_high)
-                for l in range(len(lights)):
-                    light_b = towards[l, 0] * bx + towards[l, 1] * by
-                    far_low, far_high = shifts(pattern.height, 0.0, eye_b, light_b, far_low, far_high)
-
-        # Each piece found: out of reach, parallel, or what makes this a special case.
-        grooves = 0
-        for k in range(count):
-            piece = pattern.pieces[found.piece[k]]
-            groove = pattern.grooves[piece.groove]
-            profile = pattern.profiles[groove.profile]
-            s, distance = locate(piece, view.p - found.shift[k, 0], view.q - found.shift[k, 1])
-            ux, uy = tangent_at(piece, s if piece.curvature == 0.0 else min(max(s, 0.0), piece.length))
-            sine, cosine = tx * uy - ty * ux, tx * ux + ty * uy
-            most = max(abs(profile.left), abs(profile.right)) * groove.scale_max * piece.size
-            if mode == STRICT:
-                spread = max(-near_low, near_high) + max(-wide_low, wide_high)
-                curved = spread * spread * abs(piece.curvature)
-                if abs(distance) > spread + most + curved and (piece.curvature == 0.0 or piece.closed == 1):
-                    continue
-                if abs(sine) * spread > PARALLEL * pattern.width and abs(sine) > PARALLEL:
-                    if piece.curvature != 0.0 and abs(distance) > spread + most + curved:
-                        continue
-                    mine = False
-                    break
-            elif abs(sine) > 0.05:
-                continue
-            sign = 1.0 if cosine >= 0.0 else -1.0
-            if piece.closed == 0:
-                s0 = s + (near_low if sign > 0.0 else -near_high)
-                s1 = s + (near_high if sign > 0.0 else -near_low)
-                if s1 < -margin or s0 > piece.length + margin:
-                    continue
-                if mode == STRICT:
-                    if s0 < 0.0 and piece.start_end != SMOOTH or s1 > piece.length and piece.finish_end != SMOOTH:
-                        mine = False
-                        break
-                if s < 0.0 or s > piece.length:
-                    continue
-            f, slope = scale_at(pattern.scale_table, groove, piece, s)
-            if mode == STRICT:
-                spread = max(-near_low, near_high)
-                across = min(width_high - width_low, most)
-                bend = 0.5 * spread * spread * abs(piece.curvature)
-                if bend > STRAIGHT * across or abs(slope) * max(spread, pattern.depth, most) > STRAIGHT * f:
-                    mine = False
-                    break
-            left = -sign * distance + f * (profile.left if sign > 0.0 else -profile.right)
-            right = -sign * distance + f * (profile.right if sign > 0.0 else -profile.left)
-            if right <= far_low or left >= far_high or right <= left:
-                continue
-            at = grooves
-            while at > 0 and (start[at - 1] > left or start[at - 1] == left and near[at - 1] > found.piece[k]):
-                near[at], start[at], finish[at] = near[at - 1], start[at - 1], finish[at - 1]
-                axis[at], turned[at], scale[at] = axis[at - 1], turned[at - 1], scale[at - 1]
-                at -= 1
-            near[at], start[at], finish[at] = found.piece[k], left, right
-            axis[at], turned[at], scale[at] = -sign * distance, sign, f
-            grooves += 1
-        if mine and mode == STRICT:
-            for k in range(1, grooves):
-                mine = mine and start[k] >= finish[k - 1] - 1e-9 * (finish[k] - start[k])
-        if mode == STRICT and not mine:
-            continue
-        if grooves == 0:
-            method[index] = BASE
-        else:
-            method[index] = SEGMENT_METHOD if mode == PAPER else LINE
-
         centre = bx * view.p + by * view.q
+        turn_lights(frame, view, bx, by, lights, paper, work)
         half = 0.0
-        if mode == PAPER:  # the larger projection of the footprint's two axes stands for it (000, 4.2)
+        if paper:  # the larger projection of the footprint's two axes stands for it (000, 4.2)
             rp, rq = on_plane(view, 1.0, 0.5)
-            up, uq = on_plane(view, 0.5, 0.0)
-            half = max(abs((rp - view.p) * bx + (rq - view.q) * by), abs((up - view.p) * bx + (uq - view.q) * by))
-        eye_h = 0.0 if mode == PAPER else 1.0
-        eye_w = dw
+            dp, dq = on_plane(view, 0.5, 0.0)
+            half = max(abs((rp - view.p) * bx + (rq - view.q) * by), abs((dp - view.p) * bx + (dq - view.q) * by))
         eye_d = (frame.eye[0] - view.p) * bx + (frame.eye[1] - view.q) * by
-        for l in range(len(lights)):
-            d = light_to_pattern(frame, lights[l])
-            shadow[l, 0] = (d[0] - d[3] * view.p) * bx + (d[1] - d[3] * view.q) * by
-            if (footprint.blocked >> np.uint64(l)) & np.uint64(1):
-                shadow[l, 3] = 0.0
-            if mode == PAPER and d[2] > 0.0:
-                shadow[l, 2] = 0.0
-
-        # One cross-section a groove where nothing stands above the plane, else one of all with the plane between.
-        ground = 1.0
-        k = 0
-        while k < grooves or (k == 0 and not flat and grooves > 0):
-            n = 0
-            last = k + 1 if flat else grooves
-            if not flat:
-                b[0], w[0] = min(far_low, start[0]) - 1.0 - (far_high - far_low), 0.0
-                owner[0] = facet[0] = -1
-                n = 1
-            for g in range(k, last):
-                piece = pattern.pieces[near[g]]
-                profile = pattern.profiles[pattern.grooves[piece.groove].profile]
-                if n + profile.count + 1 >= POINTS:
-                    break
-                for i in range(profile.count):
-                    j = i if turned[g] > 0.0 else profile.count - 1 - i
-                    place = axis[g] + turned[g] * scale[g] * pattern.points[profile.start + j, 0]
-                    if n > 0 and place < b[n - 1]:
-                        place = b[n - 1]
-                    if i == 0 and n > 0 and place == b[n - 1] and w[n - 1] == 0.0:
-                        n -= 1  # grooves that touch share a point
-                    b[n], w[n] = place, scale[g] * pattern.points[profile.start + j, 1]
-                    owner[n] = g
-                    facet[n] = j if turned[g] > 0.0 else j - 1
-                    n += 1
-                owner[n - 1] = facet[n - 1] = -1
-            if not flat:
-                b[n], w[n] = max(far_high, b[n - 1]) + 1.0 + (far_high - far_low), 0.0
-                n += 1
-            k = last
-            if flat and mode != PAPER:
-                band = along(view, bx, by, centre + b[n - 1]) - along(view, bx, by, centre + b[0])
-                ground -= band
-                if band <= 0.0 and eye_b == 0.0:
-                    continue
-            elif flat:
-                ground -= min(max(0.5 + 0.5 * b[n - 1] / half, 0.0), 1.0) - min(max(0.5 + 0.5 * b[0] / half, 0.0), 1.0)
-            else:
-                ground = 0.0
+        eye_h = 0.0 if paper else 1.0
+        red = green = blue = 0.0
+        plain = 1.0  # the share of the plane around the grooves
+        first = 0
+        while first < grooves:
+            last = grooves if ridged else first + 1
+            n = lay(pattern, r, first, last, work)
+            first = last
+            plain -= weight(paper, view, bx, by, centre, half, work.b[0], work.b[n - 1])
             for l in range(len(lights)):
-                if shadow[l, 3] != 0.0:
+                if work.light[l, 3] != 0.0:
+                    light = work.light[l]
                     for i in range(n):
-                        x[i] = onto_base(b[i], w[i], shadow[l, 0], shadow[l, 1], shadow[l, 2])
-                    spans(b, x, lit_low[l], lit_high[l], n, foot_of(shadow[l, 0], shadow[l, 2]))
+                        work.x[i] = onto_base(work.b[i], work.w[i], light[0], light[1], light[2])
+                    spans(work.b, work.x, work.lit_low[l], work.lit_high[l], n, foot_of(light[0], light[2]))
             for i in range(n):
-                x[i] = onto_base(b[i], w[i], eye_d, eye_w, eye_h)
-            spans(b, x, low, high, n, foot_of(eye_d, eye_h))
+                work.x[i] = onto_base(work.b[i], work.w[i], eye_d, eye_w, eye_h)
+            spans(work.b, work.x, work.low, work.high, n, foot_of(eye_d, eye_h))
             for i in range(n - 1):
-                if high[i] <= low[i] or high[i] <= width_low or low[i] >= width_high:
+                low, high = work.low[i], work.high[i]
+                if high <= low or high <= r.low or low >= r.high:
                     continue
-                if mode == PAPER:
-                    whole0, whole1 = min(max(0.5 + 0.5 * low[i] / half, 0.0), 1.0), min(max(0.5 + 0.5 * high[i] / half, 0.0), 1.0)
-                else:
-                    whole0, whole1 = along(view, bx, by, centre + low[i]), along(view, bx, by, centre + high[i])
-                part = whole1 - whole0
+                part = weight(paper, view, bx, by, centre, half, low, high)
                 if part <= 0.0:
                     continue
-                # The facet's colour under each light, found once where the lights are far.
-                row = -1
-                slot = 0
-                if owner[i] >= 0:
-                    where = pattern.grooves[pattern.pieces[near[owner[i]]].groove].slot + facet[i]
-                    slot = pattern.facet_slot[where] + 1
-                    row = 2 * where + (1 if turned[owner[i]] > 0.0 else 0)
-                if not distant or tinted[row] != index:
-                    tinted[row] = index
-                    rise, run = w[i + 1] - w[i], b[i + 1] - b[i]
-                    n_world = normal_to_world(frame, (-rise * bx, -rise * by, run))
-                    material = materials[slots[slot]]
-                    mid = 0.5 * (max(low[i], width_low) + min(high[i], width_high))
-                    u = min(max(fraction_at(mid, b[i], w[i], b[i + 1], w[i + 1], eye_d, eye_w, eye_h), 0.0), 1.0)
-                    depth = w[i] + u * rise
-                    pb = b[i] + u * run
-                    pt = eye_t * depth * (1.0 if eye_h == 0.0 else (eye_w - depth) / eye_w)
-                    at_world = to_world(frame, view.p + pb * bx + pt * tx, view.q + pb * by + pt * ty, depth)
-                    for l in range(len(lights)):
-                        colour = lit_by(lights[l], material, n_world, e, at_world)
-                        tint[row, l, 0], tint[row, l, 1], tint[row, l, 2] = colour
-                    colour = ambient(material, lighting.sky, albedo, n_world, e)
-                    tint[row, len(lights), 0], tint[row, len(lights), 1], tint[row, len(lights), 2] = colour
-                for c in range(3):
-                    radiance[index, c] += part * tint[row, len(lights), c]
+                row = tint_of(
+                    index, i, distant, pattern, frame, view, r, eye_d, eye_h, lighting, materials, slots, albedo, work
+                )
+                tint = work.tint[row]
+                red += part * tint[len(lights), 0]
+                green += part * tint[len(lights), 1]
+                blue += part * tint[len(lights), 2]
+                b0, w0, b1, w1 = work.b[i], work.w[i], work.b[i + 1], work.w[i + 1]
                 for l in range(len(lights)):
-                    if shadow[l, 3] == 0.0 or lit_high[l, i] <= lit_low[l, i]:
+                    light = work.light[l]
+                    lit_low, lit_high = work.lit_low[l, i], work.lit_high[l, i]
+                    if light[3] == 0.0 or lit_high <= lit_low:
                         continue
-                    db, dl, dh = shadow[l, 0], shadow[l, 1], shadow[l, 2]
-                    from_x, to_x = low[i], high[i]
-                    if lit_low[l, i] > onto_base(b[i], w[i], db, dl, dh):
-                        u = fraction_at(lit_low[l, i], b[i], w[i], b[i + 1], w[i + 1], db, dl, dh)
-                        cut_b, cut_w = b[i] + u * (b[i + 1] - b[i]), w[i] + u * (w[i + 1] - w[i])
-                        from_x = max(from_x, onto_base(cut_b, cut_w, eye_d, eye_w, eye_h))
-                    if lit_high[l, i] < onto_base(b[i + 1], w[i + 1], db, dl, dh):
-                        u = fraction_at(lit_high[l, i], b[i], w[i], b[i + 1], w[i + 1], db, dl, dh)
-                        cut_b, cut_w = b[i] + u * (b[i + 1] - b[i]), w[i] + u * (w[i + 1] - w[i])
-                        to_x = min(to_x, onto_base(cut_b, cut_w, eye_d, eye_w, eye_h))
+                    from_x, to_x = low, high
+                    if lit_low > onto_base(b0, w0, light[0], light[1], light[2]):
+                        from_x = max(from_x, carried(lit_low, b0, w0, b1, w1, light, eye_d, eye_w, eye_h))
+                    if lit_high < onto_base(b1, w1, light[0], light[1], light[2]):
+                        to_x = min(to_x, carried(lit_high, b0, w0, b1, w1, light, eye_d, eye_w, eye_h))
                     if to_x <= from_x:
                         continue
                     lit = part
-                    if from_x != low[i] or to_x != high[i]:
-                        if mode == PAPER:
-                            lit = min(max(0.5 + 0.5 * to_x / half, 0.0), 1.0) - min(max(0.5 + 0.5 * from_x / half, 0.0), 1.0)
-                        else:
-                            lit = along(view, bx, by, centre + to_x) - along(view, bx, by, centre + from_x)
-                    for c in range(3):
-                        radiance[index, c] += lit * tint[row, l, c]
-        if ground > 1e-12:
+                    if from_x != low or to_x != high:
+                        lit = weight(paper, view, bx, by, centre, half, from_x, to_x)
+                    red, green, blue = red + lit * tint[l, 0], green + lit * tint[l, 1], blue + lit * tint[l, 2]
+        if plain > 1e-12:
             n_world = normal_to_world(frame, (0.0, 0.0, 1.0))
+            e = (view.ex, view.ey, view.ez)
             material = materials[slots[0]]
-            at_world = to_world(frame, view.p, view.q, 0.0)
+            at = to_world(frame, view.p, view.q, 0.0)
             colour = ambient(material, lighting.sky, albedo, n_world, e)
-            radiance[index, 0] += ground * colour[0]
-            radiance[index, 1] += ground * colour[1]
-            radiance[index, 2] += ground * colour[2]
+            red, green, blue = red + plain * colour[0], green + plain * colour[1], blue + plain * colour[2]
             for l in range(len(lights)):
-                if shadow[l, 3] != 0.0:
-                    colour = lit_by(lights[l], material, n_world, e, at_world)
-                    radiance[index, 0] += ground * colour[0]
-                    radiance[index, 1] += ground * colour[1]
-                    radiance[index, 2] += ground * colour[2]
+                if work.light[l, 3] != 0.0:
+                    colour = lit_by(lights[l], material, n_world, e, at)
+                    red, green, blue = red + plain * colour[0], green + plain * colour[1], blue + plain * colour[2]
+        radiance[index, 0], radiance[index, 1], radiance[index, 2] = red, green, blue
+    keep(owned)

@@ -201,7 +201,11 @@ def _margin(pattern: Pattern, size: tuple[float, float]) -> float:
 
 
 def _tiles(
-    frame: Frame, size: int, threads: int, progress: Callable[[float], None] | None, cancelled: Callable[[], bool] | None
+    frame: Frame,
+    size: int,
+    threads: int,
+    progress: Callable[[float], None] | None,
+    cancelled: Callable[[], bool] | None,
 ) -> None:
     """Render all tiles, as many at a time as there are threads."""
     height, width = frame.method.shape
@@ -250,7 +254,8 @@ def warm_up() -> float:
         {
             "intaglio": 1,
             "camera": {"origin": [0, 0, 3], "target": [0, 0.1, 0], "resolution": [2, 2]},
-            "lights": [{"type": "constant", "radiance": [1, 1, 1]}, {"type": "point", "position": [0, 0, 2], "intensity": [1, 1, 1]}],
+            "lights": [{"type": "constant", "radiance": [1, 1, 1]},
+                       {"type": "point", "position": [0, 0, 2], "intensity": [1, 1, 1]}],
             "materials": {"m": {}},
             "patterns": {"p": {"grooves": [{"path": {"type": "circle", "center": [0.5, 0.5], "radius": 0.2},
                                             "profile": {"type": "v", "width": 0.1, "depth": 0.1}}]}},

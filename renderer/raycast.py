@@ -12,7 +12,7 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from renderer.geometry.shapes import NO_TRIANGLES, START, Triangles, block, cast, cast_triangles, frames_at
-from renderer.tables import FRAME, HIT, POINT, Floats, Ints
+from renderer.tables import FRAME, HIT, POINT, Floats
 
 Bools = NDArray[np.bool_]
 
@@ -54,7 +54,9 @@ class Caster:
         frames_at(self.objects, self.triangles, origin, directions, hits, frames)
         return frames
 
-    def blocked(self, origin: Floats, directions: Floats, hits: NDArray[np.void], lights: NDArray[np.void]) -> NDArray[np.uint64]:
+    def blocked(
+        self, origin: Floats, directions: Floats, hits: NDArray[np.void], lights: NDArray[np.void]
+    ) -> NDArray[np.uint64]:
         """For each hit (n,) a mask whose bit l says that something stands between it and light l.
 
         A convex shape does not block itself: its facets know which way they face.

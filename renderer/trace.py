@@ -51,7 +51,9 @@ class Solid:
 
     def first(self, origins: Floats, directions: Floats) -> Ints:
         """The nearest triangle (n,) of each ray, -1: none."""
-        return np.asarray(self._scene.run(origins.astype(np.float32), directions.astype(np.float32), output=1)["primID"], np.int32)
+        return np.asarray(
+            self._scene.run(origins.astype(np.float32), directions.astype(np.float32), output=1)["primID"], np.int32
+        )
 
     def blocked(self, origins: Floats, directions: Floats, far: Floats) -> NDArray[np.bool_]:
         """Whether anything stands in the way of each ray (n,) within `far`."""
@@ -77,7 +79,20 @@ def trace(
         part = chosen[begin : begin + batch]
         count = len(part) * columns * rows
         origins, directions = np.empty((count, 3)), np.empty((count, 3))
-        shoot(footprints, part, frames, camera, columns, rows, seed, solid.middle, solid.scale, solid.top, origins, directions)
+        shoot(
+            footprints,
+            part,
+            frames,
+            camera,
+            columns,
+            rows,
+            seed,
+            solid.middle,
+            solid.scale,
+            solid.top,
+            origins,
+            directions,
+        )
         row = solid.first(origins, directions)
         points = np.empty((count, 3))
         meet(solid.corners, solid.normals, row, origins, directions, points)

@@ -53,7 +53,9 @@ def local(obj: np.void, x: float, y: float, z: float) -> tuple[float, float, flo
 
 
 @leaf
-def meet_shape(obj: np.void, o: tuple[float, float, float], d: tuple[float, float, float], far: float) -> tuple[float, int]:
+def meet_shape(
+    obj: np.void, o: tuple[float, float, float], d: tuple[float, float, float], far: float
+) -> tuple[float, int]:
     """The nearest t in (0, far) at which o + t d (the object's axes) meets the shape, and the face; inf: nowhere."""
     if obj.shape == RECTANGLE:
         if d[2] != 0.0:
@@ -133,7 +135,9 @@ def cast(objects: NDArray[np.void], origin: Floats, directions: Floats, hits: ND
 
 
 @kernel
-def cast_triangles(triangles: Triangles, origin: Floats, directions: Floats, rows: Ints, hits: NDArray[np.void]) -> None:
+def cast_triangles(
+    triangles: Triangles, origin: Floats, directions: Floats, rows: Ints, hits: NDArray[np.void]
+) -> None:
     """Take what Embree found, triangle `rows[i]` (n,) or -1, in double precision where it is nearer than `hits`."""
     for i in range(len(rows)):
         row = rows[i]
@@ -259,8 +263,16 @@ def frames_at(
             if area != 0.0:
                 e1 = (c[1, 0] - c[0, 0], c[1, 1] - c[0, 1], c[1, 2] - c[0, 2])
                 e2 = (c[2, 0] - c[0, 0], c[2, 1] - c[0, 1], c[2, 2] - c[0, 2])
-                a = ((v2 * e1[0] - v1 * e2[0]) / area, (v2 * e1[1] - v1 * e2[1]) / area, (v2 * e1[2] - v1 * e2[2]) / area)
-                b = ((u1 * e2[0] - u2 * e1[0]) / area, (u1 * e2[1] - u2 * e1[1]) / area, (u1 * e2[2] - u2 * e1[2]) / area)
+                a = (
+                    (v2 * e1[0] - v1 * e2[0]) / area,
+                    (v2 * e1[1] - v1 * e2[1]) / area,
+                    (v2 * e1[2] - v1 * e2[2]) / area,
+                )
+                b = (
+                    (u1 * e2[0] - u2 * e1[0]) / area,
+                    (u1 * e2[1] - u2 * e1[1]) / area,
+                    (u1 * e2[2] - u2 * e1[2]) / area,
+                )
                 k = a[0] * n[0] + a[1] * n[1] + a[2] * n[2]  # into the plane of the smooth normal
                 a = (a[0] - k * n[0], a[1] - k * n[1], a[2] - k * n[2])
                 k = b[0] * n[0] + b[1] * n[1] + b[2] * n[2]
@@ -300,15 +312,19 @@ def frames_at(
 
 @kernel
 def touching(
-    middle: NDArray[np.void], mask: NDArray[np.uint64], corners: NDArray[np.void], masks: NDArray[np.uint64], cosine: float
-) -> NDArray[np.bool_]:
-    """Whether each square's centre (n,) and corners (4, n) hit one smooth surface in one light, or nothing at all."""
+    middle: NDArray[np.void], mask: NDArray[np.uint64], corners: NDArray[np.void], masks: NDArray[np.uint64],
+    around: NDArray[np.int64], cosine: float,
+) -> NDArray[np.bool_]:  # fmt: skip
+    """Whether each square's centre (n,) and corners hit one smooth surface in one light, or nothing at all.
+
+    around: (4, n) rows of `corners` and `masks`.
+    """
     smooth = np.ones(len(middle), np.bool_)
     for i in range(len(middle)):
         m = middle[i]
         for k in range(4):
-            c = corners[k, i]
-            same = c.object == m.object and masks[k, i] == mask[i]
+            c = corners[around[k, i]]
+            same = c.object == m.object and masks[around[k, i]] == mask[i]
             if same and m.object >= 0:
                 turn = m.normal[0] * c.normal[0] + m.normal[1] * c.normal[1] + m.normal[2] * c.normal[2]
                 same = turn > cosine

@@ -113,7 +113,7 @@ def walk(
     beta_end = (b0 + leave * (b1 - b0)) / (f0 + leave * (f1 - f0))
     step = 1 if beta_end >= beta else -1
     i = first
-    while i < last - 1 and (points[i + 1, 0] < beta or points[i + 1, 0] == beta and step > 0):
+    while i < last - 1 and (points[i + 1, 0] < beta or (points[i + 1, 0] == beta and step > 0)):
         i += 1
     if step < 0:
         while i > first and points[i, 0] >= beta:
@@ -393,9 +393,7 @@ def meet_cap(
         return n
     # leaving by the finish, s > 0 is the path's right side; by the start, its left side
     begin, end = (-1.0, left) if part == CAP_FINISH else (-left, 1.0)
-    return cut(
-        points, profile, rank, e, n, owner, high, s0, b0, f, low, s1, b1, f, begin, begin, 0.0, end, end, YES
-    )
+    return cut(points, profile, rank, e, n, owner, high, s0, b0, f, low, s1, b1, f, begin, begin, 0.0, end, end, YES)
 
 
 @leaf
@@ -477,7 +475,7 @@ def meet(
                 b = y * piece.tx - x * piece.ty
                 turn = gq * piece.tx - gp * piece.ty
                 ba, bc = b + a * turn, b + c * turn
-                if ba > piece.half and bc > piece.half or ba < -piece.half and bc < -piece.half:
+                if (ba > piece.half and bc > piece.half) or (ba < -piece.half and bc < -piece.half):
                     if piece.ended == 0:
                         continue
                     s, rise = x * piece.tx + y * piece.ty, gp * piece.tx + gq * piece.ty
