@@ -15,12 +15,12 @@ from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.solid import NO, YES, events, meet, normal_of
 from renderer.geometry.view import on_plane, view_of
-from renderer.kernel import borrow, keep, kernel
+from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
 from renderer.tables import CSG, Camera, Lighting, Pattern
 
-SHARED = np.int64(32)  # up to so many pieces are found once for all samples of a footprint
-CAPACITY = np.int64(8192)  # pieces near one stretch of a ray
+SHARED = fixed(32)  # up to so many pieces are found once for all samples of a footprint
+CAPACITY = fixed(8192)  # pieces near one stretch of a ray
 PROBE = 4  # `auto` begins with PROBE * PROBE samples
 
 

@@ -95,9 +95,7 @@ def footprints(
             smooth = touching(middle, mask, corners, corner_mask, around, SMOOTH_COSINE)
         else:
             smooth = np.ones(len(middle), np.bool_)
-        keep = smooth & (middle["object"] >= 0)
-        if keep.all():
-            keep = slice(None)
+        keep = np.flatnonzero(smooth & (middle["object"] >= 0))
         done.append(
             _framed(
                 shapes, camera, flat, pixel[keep], x[keep], y[keep], size, middle_rays[keep], middle[keep], mask[keep]
@@ -136,7 +134,7 @@ def _framed(
     """Footprints with the frames of their centres' hits; those of a rectangle share one."""
     out = np.zeros(len(hits), FOOTPRINT)
     out["pixel"], out["x"], out["y"], out["size"], out["blocked"] = pixel, x, y, size, mask
-    shared = []
+    shared: list[NDArray[np.void]] = []
     rest = np.ones(len(hits), np.bool_)
     for row, frame in flat.items():
         of = hits["object"] == row

@@ -7,14 +7,15 @@ infinities as numpy's do; a kernel that can meet one says what it does with it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
 from numba.core import types
 from numba.extending import intrinsic
 
 F = TypeVar("F", bound=Callable[..., object])
-T = TypeVar("T")
+N = TypeVar("N", int, bool)
 
 
 def kernel(function: F) -> F:
@@ -32,7 +33,12 @@ def part(function: F) -> F:
     return numba.njit(cache=False, nogil=True, error_model="numpy")(function)  # type: ignore[no-any-return]
 
 
-@intrinsic
+def fixed(value: N) -> N:
+    """A constant to hand to a function in a kernel. For a plain one numba would compile that function once more."""
+    return cast(N, np.asarray(value)[()])
+
+
+@intrinsic  # type: ignore[untyped-decorator]
 def borrow(_: Any, table: Any) -> Any:
     """The same array, or tuple of arrays, without a count of its references. For kernels.
 
@@ -46,7 +52,7 @@ def borrow(_: Any, table: Any) -> Any:
             array.meminfo = array.meminfo.type(None)
             array.parent = array.parent.type(None)
             return array._getvalue()
-        if isinstance(kind, types.BaseTuple):
+        if isinstance(kind, types.BaseTuple):  # type: ignore[attr-defined]
             items = [uncounted(context, builder, k, builder.extract_value(value, i)) for i, k in enumerate(kind)]
             return context.make_tuple(builder, kind, items)
         return value
@@ -57,7 +63,7 @@ def borrow(_: Any, table: Any) -> Any:
     return table(table), generate
 
 
-@intrinsic
+@intrinsic  # type: ignore[untyped-decorator]
 def keep(_: Any, table: Any) -> Any:
     """Keeps what a kernel has allocated, and then borrowed, alive until here."""
 

@@ -23,12 +23,12 @@ from renderer.geometry.pieces import locate, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find, nearby
 from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, shifts, spans
 from renderer.geometry.view import View, on_plane, view_of
-from renderer.kernel import borrow, keep, kernel, leaf
+from renderer.kernel import borrow, fixed, keep, kernel, leaf
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world
 from renderer.tables import BASE, DIRECTIONAL, LINE, SEGMENT_METHOD, SMOOTH, Camera, Floats, Lighting, Pattern
 
-CAPACITY = np.int64(2048)  # pieces near a footprint; more are left to sampling
-POINTS = np.int64(16384)  # points of one cross-section
+CAPACITY = fixed(2048)  # pieces near a footprint; more are left to sampling
+POINTS = fixed(16384)  # points of one cross-section
 
 # How the kernel treats what is not parallel, isolated and straight.
 STRICT = 0  # `auto`: mark it as not its own
@@ -103,7 +103,9 @@ class Reach(NamedTuple):
 
 
 @leaf
-def meet_lights(pattern: Pattern, frame: np.void, view: View, blocked: np.uint64, lights: NDArray, work: Work) -> bool:
+def meet_lights(
+    pattern: Pattern, frame: np.void, view: View, blocked: np.uint64, lights: NDArray[np.void], work: Work
+) -> bool:
     """Fill `work.light` (D_b is left to `turn_lights`) and `work.towards`; False: a light stands among the ridges."""
     clear = True
     for l in range(len(lights)):
@@ -121,7 +123,9 @@ def meet_lights(pattern: Pattern, frame: np.void, view: View, blocked: np.uint64
 
 
 @leaf
-def turn_lights(frame: np.void, view: View, bx: float, by: float, lights: NDArray, paper: bool, work: Work) -> None:
+def turn_lights(
+    frame: np.void, view: View, bx: float, by: float, lights: NDArray[np.void], paper: bool, work: Work
+) -> None:
     """Complete `work.light`: each light in the plane of the cross-section."""
     for l in range(len(lights)):
         d = light_to_pattern(frame, lights[l])
@@ -307,8 +311,8 @@ def lay(pattern: Pattern, r: Reach, first: int, last: int, work: Work) -> int:
 
 @leaf
 def tint_of(
-    index: int, i: int, distant: bool, pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float, eye_h: float,
-    lighting: Lighting, materials: NDArray, slots: NDArray, albedo: Floats, work: Work,
+    index: int, i: int, distant: bool, pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float,
+    eye_h: float, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, work: Work,
 ) -> int:  # fmt: skip
     """The row of `work.tint` with the colours of facet i, found once a footprint where all lights are far."""
     row, slot = -1, 0

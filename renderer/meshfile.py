@@ -66,7 +66,7 @@ def read(name: str, data: bytes) -> TriangleSoup:
 
 
 def _soup(mesh: object) -> TriangleSoup:
-    vertices = np.asarray(mesh.vertices, float)  # type: ignore[attr-defined]
+    vertices = np.asarray(mesh.vertices, np.float64)  # type: ignore[attr-defined]
     faces = np.asarray(mesh.faces, np.int64)  # type: ignore[attr-defined]
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise MeshFileError(f"faces of vertices 0 to {len(vertices) - 1}", f"a vertex {int(faces.max())}")
@@ -74,12 +74,12 @@ def _soup(mesh: object) -> TriangleSoup:
     coordinates = getattr(mesh.visual, "uv", None)  # type: ignore[attr-defined]
     uv = None
     if coordinates is not None and len(coordinates) == len(vertices):
-        uv = np.asarray(coordinates, float)[faces]
+        uv = np.asarray(coordinates, np.float64)[faces]
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(flat, axis=1, keepdims=True)
     flat = np.repeat(np.divide(flat, length, out=np.zeros_like(flat), where=length > 0.0)[:, None], 3, axis=1)
     if "vertex_normals" not in mesh._cache.cache:  # type: ignore[attr-defined]
         return TriangleSoup(corners, uv, flat)  # the file has none: facets stay facets
-    normals = np.asarray(mesh.vertex_normals, float)[faces]  # type: ignore[attr-defined]
+    normals = np.asarray(mesh.vertex_normals, np.float64)[faces]  # type: ignore[attr-defined]
     length = np.linalg.norm(normals, axis=2, keepdims=True)
     return TriangleSoup(corners, uv, np.where(length > 0.0, normals / np.where(length > 0.0, length, 1.0), flat))

@@ -88,23 +88,24 @@ class Frame:
                 if not len(chosen):
                     continue
                 rest = (
-                    pattern, seen.footprints, chosen, seen.frames, scene.camera, scene.lighting, scene.materials,
-                    scene.slots[row], self.albedo, radiance, method,
+                    seen.frames, scene.camera, scene.lighting, scene.materials, scene.slots[row], self.albedo,
+                    radiance, method,
                 )  # fmt: skip
                 start = clock()
                 if pattern is BARE:
-                    line(LOOSE, *rest)
+                    line(LOOSE, pattern, seen.footprints, chosen, *rest)
                 elif settings.method == "geometry":
-                    trace(self.solids[row], settings.samples, settings.seed, *rest[1:])
+                    trace(self.solids[row], settings.samples, settings.seed, seen.footprints, chosen, *rest)
                 elif settings.method == "csg":
-                    csg(settings.samples, False, settings.seed, *rest)
+                    csg(settings.samples, False, settings.seed, pattern, seen.footprints, chosen, *rest)
                 else:
-                    line({"auto": STRICT, "line": LOOSE, "segment": PAPER}[settings.method], *rest)
+                    mode = {"auto": STRICT, "line": LOOSE, "segment": PAPER}[settings.method]
+                    line(mode, pattern, seen.footprints, chosen, *rest)
                 middle = clock()
                 shaded += middle - start
                 left = chosen[method[chosen] == NOT_MINE]
                 if len(left):
-                    csg(settings.samples, True, settings.seed, *rest[:2], left, *rest[3:])
+                    csg(settings.samples, True, settings.seed, pattern, seen.footprints, left, *rest)
                     sampled += clock() - middle
         start = clock()
         image = np.empty((tile.width * tile.height, 3))

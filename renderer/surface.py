@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from renderer.meshfile import TriangleSoup
-from renderer.tables import CYLINDER, RECTANGLE, SPHERE
+from renderer.tables import CYLINDER, RECTANGLE, SPHERE, Floats
 
 
 class Surface:
@@ -40,14 +40,15 @@ class Surface:
         m = obj["mapping"]
         return [(float(u * m[0] + m[2]), float(v * m[1] + m[3])) for u, v in uv]
 
-    def _on_mesh(self, local: np.ndarray) -> np.ndarray:
+    def _on_mesh(self, local: Floats) -> Floats:
         import trimesh
 
         soup = self._soup
-        assert soup is not None and soup.uv is not None
+        assert soup is not None
+        assert soup.uv is not None
         mesh = trimesh.Trimesh(
             soup.corners.reshape(-1, 3), np.arange(3 * len(soup.corners)).reshape(-1, 3), process=False
         )
         nearest, _, row = trimesh.proximity.closest_point_naive(mesh, local)
         weights = trimesh.triangles.points_to_barycentric(soup.corners[row], nearest)
-        return np.einsum("nk,nkc->nc", weights, soup.uv[row])
+        return np.asarray(np.einsum("nk,nkc->nc", weights, soup.uv[row]), np.float64)

@@ -101,7 +101,8 @@ def trace(
             facing = np.zeros(count, np.bool_)
             towards, far = np.zeros((count, 3)), np.zeros(count)
             aim(
-                footprints, part, frames, lighting.lights[index : index + 1], index, columns * rows, solid.middle, solid.scale,
+                footprints, part, frames, lighting.lights[index : index + 1], index, columns * rows, solid.middle,
+                solid.scale,
                 points, solid.normals, row, facing, towards, far,
             )  # fmt: skip
             which = np.flatnonzero(facing)
@@ -157,8 +158,8 @@ def meet(corners: Floats, normals: Floats, row: Ints, origins: Floats, direction
 
 @kernel
 def aim(
-    footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], lights: NDArray[np.void], bit: int,
-    samples: int, middle: Floats, scale: float, points: Floats, normals: Floats, row: Ints,
+    footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], lights: NDArray[np.void],
+    bit: int, samples: int, middle: Floats, scale: float, points: Floats, normals: Floats, row: Ints,
     facing: NDArray[np.bool_], towards: Floats, far: Floats,
 ) -> None:  # fmt: skip
     """For each point that faces the light (of one row): the way to it in the solid's space, and how far it is."""

@@ -1,4 +1,4 @@
-"""A cross-section seen and lit from a point or a direction D = (db, dw, h) of its plane (DESIGN 2.1, in two dimensions).
+"""A cross-section seen and lit from a point or direction D = (db, dw, h) of its plane (DESIGN 2.1, in two dimensions).
 
 (b, w) are the place along B and the height, pattern units; h = 1: D is a point, h = 0: a direction.
 """
@@ -6,8 +6,6 @@
 from __future__ import annotations
 
 import math
-
-from numpy.typing import NDArray
 
 from renderer.geometry.share import share
 from renderer.geometry.view import View
@@ -63,7 +61,7 @@ def fraction_at(x: float, b0: float, w0: float, b1: float, w1: float, db: float,
 
 @leaf
 def carried(
-    x: float, b0: float, w0: float, b1: float, w1: float, light: NDArray, db: float, dw: float, h: float
+    x: float, b0: float, w0: float, b1: float, w1: float, light: Floats, db: float, dw: float, h: float
 ) -> float:
     """The point of a facet that the light (D_b, D_w, h, ...) projects to x, projected from D instead."""
     u = fraction_at(x, b0, w0, b1, w1, light[0], light[1], light[2])

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from renderer.kernel import kernel, leaf
 from renderer.tables import CYLINDER, MESH, RECTANGLE, SPHERE, Floats, Ints
 
+Vector = tuple[float, float, float]
+
 START = 1e-6  # shadow rays leave the surface by this part of the distance to the scene's origin
 
 
@@ -42,7 +44,7 @@ def solve(a: float, b: float, c: float) -> tuple[float, float]:
 
 
 @leaf
-def local(obj: np.void, x: float, y: float, z: float) -> tuple[float, float, float]:
+def local(obj: np.void, x: float, y: float, z: float) -> Vector:
     """A world vector in the object's axes."""
     r = obj.rotation
     return (
@@ -199,14 +201,13 @@ def block(
 
 
 @leaf
-def cross(a: tuple[float, float, float], b: tuple[float, float, float]) -> tuple[float, float, float]:
+def cross(a: Vector, b: Vector) -> Vector:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 @leaf
 def fill_frame(
-    frame: np.void, p: tuple[float, float, float], a: tuple[float, float, float], b: tuple[float, float, float],
-    n: tuple[float, float, float], origin: Floats,
+    frame: np.void, p: Vector, a: Vector, b: Vector, n: Vector, origin: Floats,
 ) -> None:  # fmt: skip
     """Complete a frame with dP/dp = a and dP/dq = b at the world point p; b is turned round where n asks for it."""
     c = cross(a, b)

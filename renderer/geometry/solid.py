@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from renderer.geometry.pieces import locate, point_at, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find
-from renderer.kernel import leaf
+from renderer.kernel import fixed, leaf
 from renderer.tables import CORNER, PROFILE, SCALE_CONSTANT, SCALE_LINEAR, SCALE_SINE, Floats, Pattern
 
 CHORD = 1e-4
@@ -27,15 +27,17 @@ CHORDS = 64  # at most this many chords for one crossing of a piece
 THIN = 1e-7  # solid thinner than this part of the pattern's height range is rounding, not matter
 EVENTS = 8192
 
-BAND, ADD, REMOVE = np.int64(0), np.int64(1), np.int64(2)
+BAND, ADD, REMOVE = fixed(0), fixed(1), fixed(2)
 
 # What a ray met (Meeting.facet), where it is not the number of a facet.
-PLANE = np.int64(-1)  # the base plane
-SIDE = np.int64(-2)  # a wall along the groove that no facet makes
-END = np.int64(-3)  # a wall across the groove: a flat end
+PLANE = fixed(-1)  # the base plane
+SIDE = fixed(-2)  # a wall along the groove that no facet makes
+END = fixed(-3)  # a wall across the groove: a flat end
 
-BODY, CAP_START, CAP_FINISH = np.int64(0), np.int64(1), np.int64(2)
-YES, NO = np.bool_(True), np.bool_(False)
+BODY, CAP_START, CAP_FINISH = fixed(0), fixed(1), fixed(2)
+
+YES, NO = fixed(True), fixed(False)
+NONE = fixed(0)
 
 
 class Events(NamedTuple):
@@ -268,7 +270,6 @@ def meet_piece(
     if piece.curvature == 0.0:
         s0, b0 = locate(piece, x0, y0)
         s1, b1 = locate(piece, x1, y1)
-        reach = max(abs(left), abs(right))
         if not (min(b0, b1) > right or max(b0, b1) < left):
             t0, t1 = 0.0, 1.0
             if b0 != b1:
@@ -465,7 +466,7 @@ def meet(
             )  # fmt: skip
             if pieces < 0:
                 pieces = len(found.piece)
-        n = np.int64(0)
+        n = NONE
         for i in range(pieces):
             item = found.piece[i]
             piece = pattern.pieces[item]
@@ -504,7 +505,7 @@ def normal_of(
     if m.part == BODY:
         # past the ends of an arc the circle goes on
         tx, ty = tangent_at(piece, s)
-        f, slope = scale_at(pattern.scale_table, groove, piece, s)
+        _, slope = scale_at(pattern.scale_table, groove, piece, s)
         bend = 1.0 - piece.curvature * b
     else:
         s = 0.0 if m.part == CAP_START else piece.length
@@ -512,7 +513,6 @@ def normal_of(
         if m.part == CAP_START:
             ux, uy = -ux, -uy
         tx, ty = uy, -ux
-        f, slope = scale_at(pattern.scale_table, groove, piece, s)
         slope = 0.0
     bx, by = -ty, tx
     along = across = up = 0.0
