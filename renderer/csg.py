@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of
-from renderer.geometry.solid import NO, YES, events, meet, normal_of
+from renderer.geometry.solid import NO, YES, events, lift, meet, normal_of, polish
 from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
@@ -88,7 +88,7 @@ def csg(
                 p, q = on_plane(view, u, v)
                 gp, gq = (frame.eye[0] - p) / dw, (frame.eye[1] - q) / dw
                 m = meet(pattern, found, spans, shared, p, q, gp, gq, top, low - thin, NO)
-                at = max(m.w, low)
+                at = max(polish(pattern, found, m, p, q, gp, gq), low)
                 x, y = p + at * gp, q + at * gq
                 n = normal_of(pattern, found, m, x, y, gp, gq)
                 slot = 0
@@ -117,12 +117,14 @@ def csg(
                     if colour[0] <= 0.0 and colour[1] <= 0.0 and colour[2] <= 0.0:
                         continue
                     if at < high or at < 0.0:
-                        lp, lq = lp / lw, lq / lw
+                        off = lift(pattern, found, m) / math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+                        sx, sy, sw = x + off * n[0], y + off * n[1], at + off * n[2]
+                        lp, lq, lw = d[0] - d[3] * sx, d[1] - d[3] * sy, d[2] - d[3] * sw
                         roof = high + thin if d[3] == 0.0 else min(high + thin, d[2])
-                        if roof > at + thin:
+                        if roof > sw + thin and lw > 0.0:
+                            lp, lq = lp / lw, lq / lw
                             s = meet(
-                                pattern, found, spans, shared, x - at * lp, y - at * lq, lp, lq,
-                                roof, at + thin, YES,
+                                pattern, found, spans, shared, sx - sw * lp, sy - sw * lq, lp, lq, roof, sw, YES,
                             )  # fmt: skip
                             if s.w > -math.inf:
                                 continue

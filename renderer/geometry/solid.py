@@ -24,6 +24,7 @@ from renderer.tables import CORNER, PROFILE, SCALE_CONSTANT, SCALE_LINEAR, SCALE
 
 CHORD = 1e-4
 CHORDS = 64  # at most this many chords for one crossing of a piece
+WIDER = 1e-3  # how much more than its width is followed of a groove by chords
 THIN = 1e-7  # solid thinner than this part of the pattern's height range is rounding, not matter
 EVENTS = 8192
 
@@ -81,6 +82,20 @@ def put(e: Events, n: int, w: float, sign: int, kind: int, rank: int, facet: int
 
 
 @leaf
+def wall(points: Floats, profile: np.void, side: int, level: float) -> int:
+    """What the wall along the left (0) or right (1) of a cross-section is at a height (scale 1): a vertical facet of
+    the profile, or none of its facets."""
+    i = profile.start if side == 0 else profile.start + profile.count - 2
+    found = SIDE
+    while profile.start <= i < profile.start + profile.count - 1 and points[i, 0] == points[i + 1, 0]:
+        found = i - profile.start
+        if min(points[i, 1], points[i + 1, 1]) <= level <= max(points[i, 1], points[i + 1, 1]):
+            break
+        i += 1 if side == 0 else -1
+    return found
+
+
+@leaf
 def walk(
     points: Floats, profile: np.void, rank: int, e: Events, n: int, owner: int, edge: int,
     w0: float, b0: float, f0: float, w1: float, b1: float, f1: float,
@@ -102,11 +117,11 @@ def walk(
         if d0 < 0.0:
             t = d0 / (d0 - d1)
             if t > enter:
-                enter, enter_facet = t, SIDE
+                enter, enter_facet = t, wall(points, profile, side, (w0 + t * (w1 - w0)) / (f0 + t * (f1 - f0)))
         elif d1 < 0.0:
             t = d0 / (d0 - d1)
             if t < leave:
-                leave, leave_facet = t, SIDE
+                leave, leave_facet = t, wall(points, profile, side, (w0 + t * (w1 - w0)) / (f0 + t * (f1 - f0)))
     if enter >= leave:
         return n
     n = put(e, n, w0 + enter * (w1 - w0), 1, BAND, rank, enter_facet, owner)
@@ -166,7 +181,9 @@ def walk(
                     adding = not adding
             came_by = SIDE
         else:
-            came_by = i - first  # a vertical wall
+            level = (w0 + t * (w1 - w0)) / (f0 + t * (f1 - f0))
+            if came_by < 0 or min(points[i, 1], points[i + 1, 1]) <= level <= max(points[i, 1], points[i + 1, 1]):
+                came_by = i - first  # a vertical wall
         t = max(t, until)
         if t >= leave or over_last:
             break
@@ -272,10 +289,11 @@ def meet_piece(
         s1, b1 = locate(piece, x1, y1)
         if not (min(b0, b1) > right or max(b0, b1) < left):
             t0, t1 = 0.0, 1.0
-            if b0 != b1:
-                ta, tb = (left - b0) / (b1 - b0), (right - b0) / (b1 - b0)
-                t0, t1 = max(t0, min(ta, tb)), min(t1, max(ta, tb))
             if s0 != s1 and groove.scale_kind != SCALE_CONSTANT:
+                if b0 != b1:  # a little more than the band, whose sides `walk` finds
+                    more = WIDER * (right - left)
+                    ta, tb = (left - more - b0) / (b1 - b0), (right + more - b0) / (b1 - b0)
+                    t0, t1 = max(t0, min(ta, tb)), min(t1, max(ta, tb))
                 # a varying scale is linear between the ends alone
                 count = chords(profile, groove, piece, abs(s1 - s0) * (t1 - t0), 1.0)
                 if groove.scale_kind == SCALE_LINEAR and (min(s0, s1) < 0.0 or max(s0, s1) > piece.length):
@@ -312,8 +330,9 @@ def meet_piece(
     radius = 1.0 / piece.curvature
     cx, cy = piece.x - piece.ty * radius, piece.y + piece.tx * radius
     size = abs(radius)
-    outer = size + (-left if radius > 0.0 else right)
-    inner = max(size - (right if radius > 0.0 else -left), 0.0)
+    more = WIDER * (right - left)
+    outer = size + (-left if radius > 0.0 else right) + more
+    inner = max(size - (right if radius > 0.0 else -left) - more, 0.0)
     ax, ay, rx, ry = x0 - cx, y0 - cy, x1 - x0, y1 - y0
     a, h, c = rx * rx + ry * ry, ax * rx + ay * ry, ax * ax + ay * ay
     o0, o1, i0, i1 = 0.0, 1.0, 2.0, 2.0
@@ -487,6 +506,56 @@ def meet(
         if w > -math.inf:
             return Meeting(w, facet, owner // 3 if owner >= 0 else -1, owner % 3 if owner >= 0 else 0)
     return Meeting(-math.inf, PLANE, -1, 0)
+
+
+@leaf
+def polish(pattern: Pattern, found: Nearby, m: Meeting, p: float, q: float, gp: float, gq: float) -> float:
+    """The height at which the ray meets the facet of `m` itself, where `m` was found by chords."""
+    if m.found < 0 or m.facet < 0 or m.part != BODY:
+        return m.w
+    piece = pattern.pieces[found.piece[m.found]]
+    groove = pattern.grooves[piece.groove]
+    if piece.curvature == 0.0 and groove.scale_kind == SCALE_CONSTANT:
+        return m.w
+    i = pattern.profiles[groove.profile].start + m.facet
+    b0, w0 = pattern.points[i, 0], pattern.points[i, 1]
+    run, rise = pattern.points[i + 1, 0] - b0, pattern.points[i + 1, 1] - w0
+    x, y = p - found.shift[m.found, 0], q - found.shift[m.found, 1]
+    far = 1e-2 * (pattern.height + pattern.depth)
+    step = 1e-4 * far
+    w = m.w
+    for _ in range(3):
+        a = above(pattern, groove, piece, x + w * gp, y + w * gq, w, b0, w0, run, rise)
+        w += step
+        c = above(pattern, groove, piece, x + w * gp, y + w * gq, w, b0, w0, run, rise)
+        w -= step
+        if a == c:
+            break
+        w -= a * step / (c - a)
+        if not abs(w - m.w) < far:
+            return m.w
+    return w
+
+
+@leaf
+def above(
+    pattern: Pattern, groove: np.void, piece: np.void, x: float, y: float, w: float,
+    b0: float, w0: float, run: float, rise: float,
+) -> float:  # fmt: skip
+    """Of a point, how far it is on one side of the facet from (b0, w0) to (b0 + run, w0 + rise), in any unit."""
+    s, b = locate(piece, x, y)
+    f, _ = scale_at(pattern.scale_table, groove, piece, s)
+    return run * (w - f * w0) - rise * (b - f * b0)
+
+
+@leaf
+def lift(pattern: Pattern, found: Nearby, m: Meeting) -> float:
+    """How far from the surface a shadow ray must begin so as not to meet it again, pattern units."""
+    if m.found < 0:
+        return THIN * pattern.width
+    piece = pattern.pieces[found.piece[m.found]]
+    exact = piece.curvature == 0.0 and pattern.grooves[piece.groove].scale_kind == SCALE_CONSTANT
+    return (THIN if exact or m.part != BODY else CHORD) * pattern.width
 
 
 @leaf
