@@ -152,6 +152,24 @@ def find_around(pattern: Pattern, view: View, eye_p: float, eye_q: float, work: 
 
 
 @leaf
+def crosses_groove(pattern: Pattern, found: Nearby, count: int, view: View) -> bool:
+    """Whether any of the cross-sections found may lie under the footprint itself."""
+    radius = 0.0
+    for k in range(4):
+        p, q = on_plane(view, float(k & 1), float(k >> 1))
+        radius = max(radius, math.hypot(p - view.p, q - view.q))
+    for k in range(count):
+        piece = pattern.pieces[found.piece[k]]
+        s, b = locate(piece, view.p - found.shift[k, 0], view.q - found.shift[k, 1])
+        if abs(b) > radius + piece.half and (piece.curvature == 0.0 or piece.closed == 1):
+            continue
+        far = radius + pattern.reach
+        if piece.curvature != 0.0 or (s > -far and s < piece.length + far):
+            return True
+    return False
+
+
+@leaf
 def direction(pattern: Pattern, found: Nearby, count: int, view: View) -> tuple[float, float]:
     """The tangent of the path that runs nearest to the footprint's centre."""
     nearest = math.inf
@@ -224,8 +242,15 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
         s, b = locate(piece, view.p - found.shift[k, 0], view.q - found.shift[k, 1])
         ux, uy = tangent_at(piece, s if piece.closed == 1 else min(max(s, 0.0), piece.length))
         sine, cosine = r.tx * uy - r.ty * ux, r.tx * ux + r.ty * uy
-        bend = spread * spread * abs(piece.curvature)
-        if abs(b) > spread + piece.half + bend and (piece.closed == 1 or piece.curvature == 0.0):
+        # what matters, a rectangle along T and B, in the piece's own coordinates
+        bend = 0.5 * spread * spread * abs(piece.curvature)
+        b0 = b + min(-sine * r.long_low, -sine * r.long_high) + min(cosine * r.wide_low, cosine * r.wide_high)
+        b1 = b + max(-sine * r.long_low, -sine * r.long_high) + max(cosine * r.wide_low, cosine * r.wide_high)
+        if (b0 - bend > piece.half or b1 + bend < -piece.half) and (piece.closed == 1 or piece.curvature == 0.0):
+            continue
+        s0 = s + min(cosine * r.long_low, cosine * r.long_high) + min(sine * r.wide_low, sine * r.wide_high)
+        s1 = s + max(cosine * r.long_low, cosine * r.long_high) + max(sine * r.wide_low, sine * r.wide_high)
+        if piece.curvature == 0.0 and (s1 < -pattern.reach or s0 > piece.length + pattern.reach):
             continue
         if abs(sine) > (PARALLEL if strict else NEARLY_PARALLEL):
             if strict:
@@ -233,10 +258,6 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
             continue
         sign = 1.0 if cosine >= 0.0 else -1.0
         if piece.closed == 0:
-            s0 = s + (r.long_low if sign > 0.0 else -r.long_high)
-            s1 = s + (r.long_high if sign > 0.0 else -r.long_low)
-            if s1 < -pattern.reach or s0 > piece.length + pattern.reach:
-                continue
             if strict and (
                 (s0 < 0.0 and piece.start_end != SMOOTH) or (s1 > piece.length and piece.finish_end != SMOOTH)
             ):
@@ -383,6 +404,8 @@ def line(
         count = find_around(pattern, view, eye_p, eye_q, work)
         if strict and count < 0:
             continue
+        if not ridged and not crosses_groove(pattern, work.found, count, view):
+            count = 0
         tx, ty = direction(pattern, work.found, count, view)
         r = reach_along(pattern, view, eye_p, eye_q, tx, ty, work)
         if strict and count > 0 and not pattern.parallel:
