@@ -1,0 +1,23 @@
+/** The canvas's colours. */
+export const colors = {
+  background: "#16181c",
+  surface: "#1d2025",
+  surfaceEdge: "#59616e",
+  grid: "#262a30",
+  gridStrong: "#31363e",
+  axis: "#48505c",
+  label: "#7d8795",
+  band: "rgba(122, 162, 214, 0.26)",
+  ridge: "rgba(214, 178, 122, 0.26)",
+  line: "rgba(158, 192, 234, 0.85)",
+  ridgeLine: "rgba(234, 205, 158, 0.85)",
+  selectedBand: "rgba(255, 179, 71, 0.34)",
+  selectedLine: "#ffb347",
+  hoverLine: "#e8eefc",
+  problemLine: "#ff6b6b",
+  problemBand: "rgba(255, 107, 107, 0.28)",
+  tile: "#6fbf9f",
+  handle: "#16181c",
+  control: "#8fa0b8",
+  draft: "#ffd9a0",
+} as const;
