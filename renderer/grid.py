@@ -19,9 +19,8 @@ from renderer.tables import Floats, Grid, Ints
 
 FINEST = 1024  # cells along one side at most
 CELLS = 1 << 18  # cells in all at most
-ENTRY = 0.15
-"""What an entry a piece costs, in pieces looked at a query: it holds the grid of 500 concentric circles at about 60
-entries a circle."""
+ENTRY = 0.05  # what an entry a piece costs, in pieces looked at a query
+ENTRIES = 40  # a piece at most, on average, as estimated: about half the memory of patterns that have more
 ARC_CHORD = 0.05  # an arc is listed by chords that leave it by this part of a cell, and by the cells so near to them
 
 
@@ -60,16 +59,10 @@ def _resolution(run: Floats, size: Floats, width: float) -> tuple[int, int]:
             if nx > 2 * finest[0] - 1 or ny > 2 * finest[1] - 1 or nx * ny > CELLS:
                 continue
             entries = n + total[0] * nx + total[1] * ny
-            looked = (
-                1.0 + nx * width / size[0],
-                1.0 + ny * width / size[1],
-            )  # cells that a query of a groove's width sees
-            # a piece is looked at once, however many of the cells list it
-            work = (
-                entries / (nx * ny) * looked[0] * looked[1]
-                + 0.2 * looked[0] * looked[1]
-                + ENTRY * (entries + 0.5 * nx * ny) / n
-            )
+            if entries > ENTRIES * n and nx * ny > 1:
+                continue
+            cells = (1.0 + nx * width / size[0]) * (1.0 + ny * width / size[1])  # that a query of a groove's width sees
+            work = (entries / (nx * ny) + 0.2) * cells + ENTRY * (entries + 0.5 * nx * ny) / n
             if work < best:
                 best, choice = work, (nx, ny)
     return choice

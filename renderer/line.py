@@ -96,6 +96,7 @@ class Reach(NamedTuple):
     eye_b: float
     low: float  # the footprint along B
     high: float
+    length: float  # the farthest it gets from its centre along T
     wide_low: float  # ... with what is seen through it, or shades that
     wide_high: float
     long_low: float  # the same along T
@@ -198,6 +199,7 @@ def reach_along(pattern: Pattern, view: View, eye_p: float, eye_q: float, tx: fl
         low, high = min(low, across), max(high, across)
         long_low, long_high = min(long_low, on), max(long_high, on)
     eye_b, eye_t = eye_p * bx + eye_q * by, eye_p * tx + eye_q * ty
+    length = max(-long_low, long_high)
     room = 2.0 * pattern.width
     deep = pattern.depth if abs(eye_b) * pattern.depth <= room else room / abs(eye_b)
     wide_low, wide_high = shifts(pattern.height, deep, eye_b, 0.0, low, high)
@@ -209,7 +211,7 @@ def reach_along(pattern: Pattern, view: View, eye_p: float, eye_q: float, tx: fl
             below = deep if abs(light_b) * deep <= room else room / abs(light_b)
             wide_low, wide_high = shifts(pattern.height, below, eye_b, light_b, wide_low, wide_high)
             long_low, long_high = shifts(pattern.height, below, eye_t, light_t, long_low, long_high)
-    return Reach(tx, ty, eye_t, eye_b, low, high, wide_low, wide_high, long_low, long_high)
+    return Reach(tx, ty, eye_t, eye_b, low, high, length, wide_low, wide_high, long_low, long_high)
 
 
 @leaf
@@ -266,8 +268,11 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
                 continue  # the next piece takes it on
         f, slope = scale_at(pattern.scale_table, groove, piece, s)
         if strict:
-            across = min(r.high - r.low, piece.half)
-            if 0.5 * length * length * abs(piece.curvature) > STRAIGHT * across:
+            # Bending moves whole strips aside: it tells at the footprint's rim, and between a facet and its shadow.
+            turn = 0.5 * abs(piece.curvature)
+            if turn * r.length**2 > STRAIGHT * (r.high - r.low):
+                return -1
+            if turn * (length - r.length) ** 2 > STRAIGHT * piece.half:
                 return -1
             if abs(slope) * max(length, pattern.depth, piece.half) > STRAIGHT * f:
                 return -1
