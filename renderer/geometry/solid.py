@@ -501,6 +501,18 @@ def meet(
                     s, rise = x * piece.tx + y * piece.ty, gp * piece.tx + gq * piece.ty
                     if max(s + a * rise, s + c * rise) < piece.length and min(s + a * rise, s + c * rise) > 0.0:
                         continue
+            elif piece.ended == 0:
+                radius = 1.0 / piece.curvature
+                x = p - dx - piece.x + piece.ty * radius + a * gp  # from the centre of curvature
+                y = q - dy - piece.y - piece.tx * radius + a * gq
+                mx, my = (c - a) * gp, (c - a) * gq
+                along = mx * mx + my * my
+                t = min(max(-(x * mx + y * my) / along, 0.0), 1.0) if along > 0.0 else 0.0
+                outer, inner = abs(radius) + piece.half, max(abs(radius) - piece.half, 0.0)
+                if (x + t * mx) ** 2 + (y + t * my) ** 2 > outer * outer:
+                    continue
+                if max(x * x + y * y, (x + mx) ** 2 + (y + my) ** 2) < inner * inner:
+                    continue
             n = meet_piece(pattern, e, n, i, item, dx, dy, p, q, gp, gq, a, c)
         w, facet, owner = first(e, n, a, c, thin)
         if w > -math.inf:
