@@ -1,0 +1,47 @@
+"""The scenes measured: the examples, and how they are rendered here."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import schema
+from renderer import pipeline
+from renderer.compile import PatternCache
+
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+Floats = NDArray[np.float64]
+
+
+def load(name: str) -> schema.Scene:
+    """An example; AssertionError where it is not valid."""
+    report = schema.check_text((EXAMPLES / f"{name}.json").read_bytes())
+    assert report.scene is not None, [problem.line() for problem in report.problems]
+    return report.scene
+
+
+def seeded(scene: schema.Scene, seed: int) -> schema.Scene:
+    """The scene with another seed for its samples."""
+    return scene.model_copy(update={"render": scene.render.model_copy(update={"seed": seed})})
+
+
+def timed(
+    scene: schema.Scene, method: str, resolution: tuple[int, int], samples: int | None = None,
+    patterns: PatternCache | None = None,
+) -> tuple[Floats, float, pipeline.Picture]:  # fmt: skip
+    """The radiance, the seconds of the whole frame by the clock, and all else of it."""
+    begin = time.perf_counter()
+    picture = pipeline.render(scene, method=method, resolution=resolution, samples=samples, patterns=patterns)
+    return picture.radiance.astype(np.float64), time.perf_counter() - begin, picture
+
+
+def inside(scene: schema.Scene, resolution: tuple[int, int]) -> NDArray[np.bool_]:
+    """The pixels (H, W) that see nothing but an object, and whose neighbours do so too."""
+    seen = timed(scene, "base", resolution)[2].aovs["method"] != 0
+    padded = np.pad(seen, 1)  # what lies beyond the picture's edge is not known to be inside
+    height, width = seen.shape
+    shifted = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3)]
+    return np.asarray(np.all(shifted, axis=0))
