@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of
-from renderer.geometry.solid import NO, YES, events, lift, meet, normal_of, polish
+from renderer.geometry.solid import NO, OPEN, YES, events, lift, meet, normal_of, polish
 from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
@@ -21,6 +21,7 @@ from renderer.tables import CSG, Camera, Lighting, Pattern
 
 SHARED = fixed(32)  # up to so many pieces are found once for all samples of a footprint
 CAPACITY = fixed(8192)  # pieces near one stretch of a ray
+LEVEL = 1e-6  # a light's slope to the plane is taken for at least this
 PROBE = 4  # `auto` begins with PROBE * PROBE samples
 
 
@@ -61,10 +62,13 @@ def csg(
         fp0, fp1, fq0, fq1 = p0, p1, q0, q1
         for l in range(len(lights)):
             d = light_to_pattern(frame, lights[l])
-            if d[2] > 0.0:
-                gp, gq = (d[0] - d[3] * view.p) / d[2], (d[1] - d[3] * view.q) / d[2]
-                fp0, fp1 = min(fp0, p0 + (high - low) * gp), max(fp1, p1 + (high - low) * gp)
-                fq0, fq1 = min(fq0, q0 + (high - low) * gq), max(fq1, q1 + (high - low) * gq)
+            if d[2] > 0.0 and d[3] == 0.0:
+                gp, gq = (high - low) * d[0] / d[2], (high - low) * d[1] / d[2]
+                fp0, fp1, fq0, fq1 = min(fp0, p0 + gp), max(fp1, p1 + gp), min(fq0, q0 + gq), max(fq1, q1 + gq)
+            elif d[2] > 0.0:
+                way = min((high - low) / (d[2] - low), 1.0)  # the part of the way to the light that leads by grooves
+                fp0, fp1 = min(fp0, p0 + way * (d[0] - p0)), max(fp1, p1 + way * (d[0] - p1))
+                fq0, fq1 = min(fq0, q0 + way * (d[1] - q0)), max(fq1, q1 + way * (d[1] - q1))
         margin = pattern.reach
         shared = find(pattern, found, fp0 - margin, fq0 - margin, fp1 + margin, fq1 + margin, SHARED)
 
@@ -111,23 +115,27 @@ def csg(
                         continue
                     d = light_to_pattern(frame, lights[l])
                     lp, lq, lw = d[0] - d[3] * x, d[1] - d[3] * y, d[2] - d[3] * at
-                    if d[2] <= 0.0 or lw <= 0.0 or n[0] * lp + n[1] * lq + n[2] * lw <= 0.0:
+                    if d[2] <= 0.0 or n[0] * lp + n[1] * lq + n[2] * lw <= 0.0:
                         continue
                     colour = lit_by(lights[l], material, n_world, e, at_world)
                     if colour[0] <= 0.0 and colour[1] <= 0.0 and colour[2] <= 0.0:
                         continue
-                    if at < high or at < 0.0:
-                        off = lift(pattern, found, m) / math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
-                        sx, sy, sw = x + off * n[0], y + off * n[1], at + off * n[2]
-                        lp, lq, lw = d[0] - d[3] * sx, d[1] - d[3] * sy, d[2] - d[3] * sw
-                        roof = high + thin if d[3] == 0.0 else min(high + thin, d[2])
-                        if roof > sw + thin and lw > 0.0:
-                            lp, lq = lp / lw, lq / lw
-                            s = meet(
-                                pattern, found, spans, shared, sx - sw * lp, sy - sw * lq, lp, lq, roof, sw, YES,
-                            )  # fmt: skip
-                            if s.w > -math.inf:
-                                continue
+                    off = lift(pattern, found, m) / math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+                    sx, sy, sw = x + off * n[0], y + off * n[1], at + off * n[2]
+                    lp, lq, lw = d[0] - d[3] * sx, d[1] - d[3] * sy, d[2] - d[3] * sw
+                    level = LEVEL * math.hypot(lp, lq)
+                    if abs(lw) < level:  # rays are followed by height
+                        lw = math.copysign(level, lw)
+                    lp, lq = lp / lw, lq / lw
+                    roof = high + thin if d[3] == 0.0 else min(high + thin, sw + lw)
+                    if lw < 0.0:
+                        s = meet(pattern, found, spans, shared, sx - sw * lp, sy - sw * lq, lp, lq, sw, sw + lw, NO)
+                    elif roof > sw:
+                        s = meet(pattern, found, spans, shared, sx - sw * lp, sy - sw * lq, lp, lq, roof, sw, YES)
+                    else:
+                        s = OPEN
+                    if s.w > -math.inf:
+                        continue
                     lit |= np.uint64(1) << np.uint64(l)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 if taken == 0:

@@ -58,7 +58,7 @@ class Section(NamedTuple):
 
 
 class Scale(NamedTuple):
-    """f(t) * size along a stroke, t = t0 + (t1 - t0) * s / length."""
+    """f(t) * size along a stroke, t = t0 + (t1 - t0) * s / length; past the piece's ends it keeps the end's value."""
 
     kind: int
     a: float
@@ -74,7 +74,7 @@ class Scale(NamedTuple):
     def __call__(self, s: Floats) -> Floats:
         if self.kind == SCALE_CONSTANT:
             return np.full(np.shape(s), self.size)
-        t = self.t0 + (self.t1 - self.t0) * np.asarray(s, np.float64) / self.length
+        t = self.t0 + (self.t1 - self.t0) * np.clip(np.asarray(s, np.float64) / self.length, 0.0, 1.0)
         if self.kind == SCALE_LINEAR:
             f = self.a + (self.b - self.a) * t
         elif self.kind == SCALE_SINE:
@@ -412,19 +412,21 @@ def ring_table(stroke: Stroke, section: Section) -> Floats:
         at = np.unique(np.concatenate([np.arange(count) * (stroke.length / count), knots]))
         at = at[(at >= 0.0) & (at < stroke.length)]
         return np.repeat(at[:, None], len(section.b), axis=1)
-    if not math.isfinite(step) and len(knots) == 0:
+    straight = bool(np.all(begin == begin[0]) and np.all(end == end[0])) or scale.kind == SCALE_CONSTANT
+    if not math.isfinite(step) and len(knots) == 0 and straight:
         return np.stack([begin, end])
     low, high = float(begin.max()), float(end.min())
     if high <= low:
-        count = max(1, math.ceil(float(end.max() - begin.min()) / step))
+        count = max(1 if scale.kind == SCALE_CONSTANT else 64, math.ceil(float(end.max() - begin.min()) / step))
         u = np.linspace(0.0, 1.0, count + 1)[:, None]
         return (1.0 - u) * begin + u * end
+    bends = 1 if scale.kind == SCALE_CONSTANT else 32  # a mitre leads past the piece's end, where the scale bends
     inset = 1e-3 * min(step, high - low)
     rings = [begin[None, :]]
     sheared = (float(begin.max() - begin.min()) > 0.0, float(end.max() - end.min()) > 0.0)
     first, last = low + inset * sheared[0], high - inset * sheared[1]
     if sheared[0]:
-        u = np.linspace(0.0, 1.0, max(1, math.ceil(float(low - begin.min()) / step)) + 1)[1:, None]
+        u = np.linspace(0.0, 1.0, max(bends, math.ceil(float(low - begin.min()) / step)) + 1)[1:, None]
         rings.append((1.0 - u) * begin + u * first)
     count = max(1, math.ceil((last - first) / step))
     at = np.linspace(first, last, count + 1)[1:-1]
@@ -435,7 +437,7 @@ def ring_table(stroke: Stroke, section: Section) -> Floats:
         at = at[np.concatenate([[True], np.diff(at) > near])]
     rings.append(np.repeat(at[:, None], len(section.b), axis=1))
     if sheared[1]:
-        u = np.linspace(0.0, 1.0, max(1, math.ceil(float(end.max() - high) / step)) + 1)[:-1, None]
+        u = np.linspace(0.0, 1.0, max(bends, math.ceil(float(end.max() - high) / step)) + 1)[:-1, None]
         rings.append((1.0 - u) * last + u * end)
     rings.append(end[None, :])
     return np.concatenate(rings)

@@ -20,12 +20,26 @@ from numpy.typing import NDArray
 from renderer.geometry.pieces import locate, point_at, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find
 from renderer.kernel import fixed, leaf
-from renderer.tables import CORNER, PROFILE, SCALE_CONSTANT, SCALE_LINEAR, SCALE_SINE, Floats, Pattern
+from renderer.tables import (
+    CORNER,
+    FLAT,
+    PROFILE,
+    SCALE_CONSTANT,
+    SCALE_LINEAR,
+    SCALE_SINE,
+    SCALE_TABLE,
+    SMOOTH,
+    Floats,
+    Pattern,
+)
 
 CHORD = 1e-4
 CHORDS = 64  # at most this many chords for one crossing of a piece
 WIDER = 1e-3  # how much more than its width is followed of a groove by chords
 THIN = 1e-7  # solid thinner than this part of the pattern's height range is rounding, not matter
+SINE_CHORDS = 96  # a period of a scale
+HAIR = 1e-6  # of a groove's half-width
+SMOOTH_HAIR = 2e-4  # where pieces go on smoothly, which may mean a turn of up to paths.SNAP
 EVENTS = 8192
 
 BAND, ADD, REMOVE = fixed(0), fixed(1), fixed(2)
@@ -35,7 +49,8 @@ PLANE = fixed(-1)  # the base plane
 SIDE = fixed(-2)  # a wall along the groove that no facet makes
 END = fixed(-3)  # a wall across the groove: a flat end
 
-BODY, CAP_START, CAP_FINISH = fixed(0), fixed(1), fixed(2)
+BODY, CAP_START, CAP_FINISH, TAIL_START, TAIL_FINISH = fixed(0), fixed(1), fixed(2), fixed(3), fixed(4)
+PARTS = 5
 
 YES, NO = fixed(True), fixed(False)
 NONE = fixed(0)
@@ -45,7 +60,7 @@ class Events(NamedTuple):
     """Ends of spans along one ray; memory of one thread, used again by each ray."""
 
     w: NDArray[np.float64]  # (EVENTS,)
-    change: NDArray[np.int32]  # (EVENTS, 5): +1 or -1, BAND, ADD or REMOVE, rank, facet, 3 * place found + part
+    change: NDArray[np.int32]  # (EVENTS, 5): +1 or -1, BAND, ADD or REMOVE, rank, facet, PARTS * place found + part
     open: NDArray[np.int32]  # (ranks, 3) spans open at the ray's present height
 
 
@@ -55,7 +70,11 @@ class Meeting(NamedTuple):
     w: float
     facet: int
     found: int  # place of the piece in `Nearby`; -1: the plane
-    part: int  # BODY, CAP_START or CAP_FINISH
+    part: int  # BODY, CAP_..., or TAIL_...: past an arc's end, where the groove goes on straight
+
+
+OPEN = Meeting(-math.inf, -1, -1, 0)
+"""Nothing was met."""
 
 
 @leaf
@@ -241,17 +260,15 @@ def cut(
 
 @leaf
 def chords(profile: np.void, groove: np.void, piece: np.void, travel: float, closest: float) -> int:
-    """How many chords follow a ray along `travel` pattern units of a piece, `closest` to its centre of curvature."""
-    count = 1.0
-    if piece.curvature != 0.0:
-        width = (profile.right - profile.left) * groove.scale_max * piece.size
-        count = max(count, travel / math.sqrt(8.0 * max(closest, CHORD * width) * CHORD * width))
+    """How many chords follow a ray along `travel` pattern units of an arc, `closest` to its centre."""
+    width = (profile.right - profile.left) * groove.scale_max * piece.size
+    count = max(1.0, travel / math.sqrt(8.0 * max(closest, CHORD * width) * CHORD * width))
     if groove.scale_kind != SCALE_CONSTANT:
         part = (piece.t1 - piece.t0) * min(travel / piece.length, 1.0)
         if groove.scale_kind == SCALE_LINEAR:
-            count = max(count, 1.0 if piece.curvature == 0.0 else 64.0 * part)
+            count = max(count, 64.0 * part)
         elif groove.scale_kind == SCALE_SINE:
-            count = max(count, 48.0 * groove.scale_b * part)
+            count = max(count, SINE_CHORDS * groove.scale_b * part)
         else:
             count = max(count, 4.0 * groove.table_count * part)
     return int(math.ceil(min(count, CHORDS + 0.0)))
@@ -273,8 +290,16 @@ def meet_piece(
     x1, y1 = p - dx + low * gp, q - dy + low * gq
     capped = profile.right > 0.0
     ratio = profile.right / -profile.left if profile.left < 0.0 else 0.0  # right half-width by left
-    begin_left = begin_right = end_left = end_right = 0.0
-    if piece.closed == 0:
+    # Pieces that go on in one another overlap by a hair, as no two of them end at quite the same line.
+    hair = HAIR * piece.half
+    start_hair = finish_hair = 0.0
+    if piece.start_end != FLAT:
+        start_hair = SMOOTH_HAIR * piece.half if piece.start_end == SMOOTH else hair * (1.0 + abs(piece.start_mitre))
+    if piece.finish_end != FLAT:
+        finish_hair = SMOOTH_HAIR * piece.half if piece.finish_end == SMOOTH else hair * (1.0 + abs(piece.finish_mitre))
+
+    if piece.curvature == 0.0:
+        begin_left = begin_right = end_left = end_right = 0.0
         if piece.start_end == CORNER:
             begin_left = begin_right = piece.start_mitre
         elif piece.start_end == PROFILE and capped:
@@ -283,45 +308,43 @@ def meet_piece(
             end_left = end_right = -piece.finish_mitre
         elif piece.finish_end == PROFILE and capped:
             end_left, end_right = 1.0, -ratio
-
-    if piece.curvature == 0.0:
         s0, b0 = locate(piece, x0, y0)
         s1, b1 = locate(piece, x1, y1)
+        varies = s0 != s1 and groove.scale_kind != SCALE_CONSTANT
         if not (min(b0, b1) > right or max(b0, b1) < left):
             t0, t1 = 0.0, 1.0
-            if s0 != s1 and groove.scale_kind != SCALE_CONSTANT:
-                if b0 != b1:  # a little more than the band, whose sides `walk` finds
-                    more = WIDER * (right - left)
-                    ta, tb = (left - more - b0) / (b1 - b0), (right + more - b0) / (b1 - b0)
-                    t0, t1 = max(t0, min(ta, tb)), min(t1, max(ta, tb))
-                # a varying scale is linear between the ends alone
-                count = chords(profile, groove, piece, abs(s1 - s0) * (t1 - t0), 1.0)
-                if groove.scale_kind == SCALE_LINEAR and (min(s0, s1) < 0.0 or max(s0, s1) > piece.length):
-                    count = CHORDS
-            else:
-                count = 1
-            if t0 < t1:
-                for k in range(count):
-                    a, c = t0 + (t1 - t0) * k / count, t0 + (t1 - t0) * (k + 1) / count
-                    sa, sc = s0 + a * (s1 - s0), s0 + c * (s1 - s0)
-                    fa, _ = scale_at(pattern.scale_table, groove, piece, sa)
-                    fc, _ = scale_at(pattern.scale_table, groove, piece, sc)
-                    n = cut(
-                        points, profile, rank, e, n, 3 * found + BODY,
-                        high + a * (low - high), sa, b0 + a * (b1 - b0), fa,
-                        high + c * (low - high), sc, b0 + c * (b1 - b0), fc,
-                        begin_left, begin_right, piece.length, end_left, end_right, NO,
-                    )  # fmt: skip
+            if varies and b0 != b1:  # a little more than the band, whose sides `walk` finds
+                more = WIDER * (right - left)
+                ta, tb = (left - more - b0) / (b1 - b0), (right + more - b0) / (b1 - b0)
+                t0, t1 = max(t0, min(ta, tb)), min(t1, max(ta, tb))
+            least = (t1 - t0) / (4 * CHORDS)
+            a = t0
+            while a < t1:
+                sa = s0 + a * (s1 - s0)
+                c = t1
+                if varies:
+                    stop = (next_stop(pattern.scale_table, groove, piece, sa, s1 > s0) - s0) / (s1 - s0)
+                    c = min(t1, max(stop, a + least))
+                sc = s0 + c * (s1 - s0)
+                fa, _ = scale_at(pattern.scale_table, groove, piece, sa)
+                fc, _ = scale_at(pattern.scale_table, groove, piece, sc)
+                n = cut(
+                    points, profile, rank, e, n, PARTS * found + BODY,
+                    high + a * (low - high), sa + start_hair, b0 + a * (b1 - b0), fa,
+                    high + c * (low - high), sc + start_hair, b0 + c * (b1 - b0), fc,
+                    begin_left, begin_right, piece.length + start_hair + finish_hair, end_left, end_right, NO,
+                )  # fmt: skip
+                a = c
         if piece.closed == 0 and capped:
             if piece.start_end == PROFILE and min(s0, s1) < 0.0:
                 f, _ = scale_at(pattern.scale_table, groove, piece, 0.0)
                 n = meet_cap(
-                    points, profile, rank, e, n, 3 * found + CAP_START, CAP_START, f, -s0, b0, -s1, b1, high, low
+                    points, profile, rank, e, n, PARTS * found + CAP_START, CAP_START, f, -s0, b0, -s1, b1, high, low
                 )
             if piece.finish_end == PROFILE and max(s0, s1) > piece.length:
                 f, _ = scale_at(pattern.scale_table, groove, piece, piece.length)
                 n = meet_cap(
-                    points, profile, rank, e, n, 3 * found + CAP_FINISH, CAP_FINISH, f,
+                    points, profile, rank, e, n, PARTS * found + CAP_FINISH, CAP_FINISH, f,
                     s0 - piece.length, -b0, s1 - piece.length, -b1, high, low,
                 )  # fmt: skip
         return n
@@ -350,6 +373,9 @@ def meet_piece(
             if root > 0.0:
                 root = math.sqrt(root)
                 i0, i1 = (-h - root) / a, (-h + root) / a
+    # Its ends are straight lines across it: how far inside of them the ray is at its two ends.
+    ds0, ds1 = inside(piece, 0.0, x0, y0) + start_hair, inside(piece, 0.0, x1, y1) + start_hair
+    df0, df1 = inside(piece, piece.length, x0, y0) + finish_hair, inside(piece, piece.length, x1, y1) + finish_hair
     for crossing in range(2):
         t0, t1 = o0, o1
         if i0 <= 1.0:
@@ -366,20 +392,37 @@ def meet_piece(
         count = chords(profile, groove, piece, math.sqrt(a) * (t1 - t0), closest)
         s0, b0 = locate(piece, x0 + t0 * rx, y0 + t0 * ry)
         f0, _ = scale_at(pattern.scale_table, groove, piece, s0)
-        w0 = high + t0 * (low - high)
+        ta = t0
         for k in range(count):
-            t = t0 + (t1 - t0) * (k + 1) / count
-            s1, b1 = locate(piece, x0 + t * rx, y0 + t * ry)
+            tc = t0 + (t1 - t0) * (k + 1) / count
+            s1, b1 = locate(piece, x0 + tc * rx, y0 + tc * ry)
             f1, _ = scale_at(pattern.scale_table, groove, piece, s1)
-            w1 = high + t * (low - high)
-            if piece.closed == 1:
-                n = walk(points, profile, rank, e, n, 3 * found + BODY, SIDE, w0, b0, f0, w1, b1, f1)
-            elif abs(s1 - s0) <= math.pi * size:  # not across the far side, where s starts again
-                n = cut(
-                    points, profile, rank, e, n, 3 * found + BODY, w0, s0, b0, f0, w1, s1, b1, f1,
-                    begin_left, begin_right, piece.length, end_left, end_right, NO,
-                )  # fmt: skip
-            s0, b0, f0, w0 = s1, b1, f1, w1
+            if piece.closed == 1 or abs(s1 - s0) <= math.pi * size:  # not across the far side, where s starts again
+                u0, u1 = 0.0, 1.0
+                for end in range(2 if piece.closed == 0 else 0):
+                    # the line across an end meets the ring once more: there it does not count
+                    at = 0.0 if end == 0 else piece.length
+                    lean = math.atan(piece.start_mitre) if end == 0 else -math.atan(piece.finish_mitre)
+                    angle = (0.5 * (s0 + s1) - at) / size + math.copysign(lean, lean * radius)
+                    d0, d1 = (ds0, ds1) if end == 0 else (df0, df1)
+                    if abs(angle) > 0.5 * math.pi:
+                        if (angle < 0.0) == (end == 0):
+                            u1 = -1.0
+                        continue
+                    d0, d1 = d0 + ta * (d1 - d0), d0 + tc * (d1 - d0)
+                    if d0 < 0.0 and d1 < 0.0:
+                        u1 = -1.0
+                    elif d0 < 0.0:
+                        u0 = max(u0, d0 / (d0 - d1))
+                    elif d1 < 0.0:
+                        u1 = min(u1, d0 / (d0 - d1))
+                if u0 < u1:
+                    n = walk(
+                        points, profile, rank, e, n, PARTS * found + BODY, END,
+                        high + (ta + u0 * (tc - ta)) * (low - high), b0 + u0 * (b1 - b0), f0 + u0 * (f1 - f0),
+                        high + (ta + u1 * (tc - ta)) * (low - high), b0 + u1 * (b1 - b0), f0 + u1 * (f1 - f0),
+                    )  # fmt: skip
+            s0, b0, f0, ta = s1, b1, f1, tc
     if piece.closed == 0 and capped:
         for end in range(2):
             if (piece.start_end if end == 0 else piece.finish_end) != PROFILE:
@@ -388,15 +431,54 @@ def meet_piece(
             tx, ty = tangent_at(piece, s)
             ex, ey = point_at(piece, s)
             out = -1.0 if end == 0 else 1.0
-            part = CAP_START if end == 0 else CAP_FINISH
             f, _ = scale_at(pattern.scale_table, groove, piece, s)
-            n = meet_cap(
-                points, profile, rank, e, n, 3 * found + part, part, f,
-                out * ((x0 - ex) * tx + (y0 - ey) * ty), -out * ((y0 - ey) * tx - (x0 - ex) * ty),
-                out * ((x1 - ex) * tx + (y1 - ey) * ty), -out * ((y1 - ey) * tx - (x1 - ex) * ty),
-                high, low,
+            s0, s1 = out * ((x0 - ex) * tx + (y0 - ey) * ty), out * ((x1 - ex) * tx + (y1 - ey) * ty)
+            b0, b1 = (y0 - ey) * tx - (x0 - ex) * ty, (y1 - ey) * tx - (x1 - ex) * ty
+            if max(s0, s1) <= 0.0:
+                continue
+            # past its end the groove goes on straight, as far as it is read along b
+            n = cut(
+                points, profile, rank, e, n, PARTS * found + (TAIL_START if end == 0 else TAIL_FINISH),
+                high, s0 + hair, b0, f, low, s1 + hair, b1, f, 0.0, 0.0, 2.0 * hair, 1.0, -ratio, NO,
             )  # fmt: skip
+            part = CAP_START if end == 0 else CAP_FINISH
+            n = meet_cap(points, profile, rank, e, n, PARTS * found + part, part, f, s0, -out * b0, s1, -out * b1, high, low)
     return n
+
+
+@leaf
+def inside(piece: np.void, s: float, x: float, y: float) -> float:
+    """How far a point is inside the line that ends an arc at s: 0 or its length."""
+    tx, ty = tangent_at(piece, s)
+    ex, ey = point_at(piece, s)
+    on, across = (x - ex) * tx + (y - ey) * ty, (y - ey) * tx - (x - ex) * ty
+    return on - piece.start_mitre * across if s == 0.0 else -on - piece.finish_mitre * across
+
+
+@leaf
+def next_stop(scale_table: Floats, groove: np.void, piece: np.void, s: float, forwards: bool) -> float:
+    """Where along a straight piece, beyond s, its scale bends: between these places it counts as linear."""
+    sign = 1.0 if forwards else -1.0
+    s += sign * 1e-9 * piece.length
+    if s <= 0.0:
+        return 0.0 if forwards else -math.inf
+    if s >= piece.length:
+        return math.inf if forwards else piece.length
+    if groove.scale_kind == SCALE_SINE:
+        step = piece.length / math.ceil(max(SINE_CHORDS * groove.scale_b * (piece.t1 - piece.t0), 1.0))
+        return min(max(step * ((math.floor(s / step) + 1.0) if forwards else math.ceil(s / step) - 1.0), 0.0), piece.length)
+    if groove.scale_kind == SCALE_TABLE:
+        t = piece.t0 + (piece.t1 - piece.t0) * s / piece.length
+        low, high = groove.table_start, groove.table_start + groove.table_count - 1
+        while high - low > 1:
+            middle = (low + high) // 2
+            if scale_table[middle, 0] <= t:
+                low = middle
+            else:
+                high = middle
+        knot = (scale_table[high if forwards else low, 0] - piece.t0) / (piece.t1 - piece.t0) * piece.length
+        return min(max(knot, 0.0), piece.length)
+    return piece.length if forwards else 0.0
 
 
 @leaf
@@ -516,8 +598,8 @@ def meet(
             n = meet_piece(pattern, e, n, i, item, dx, dy, p, q, gp, gq, a, c)
         w, facet, owner = first(e, n, a, c, thin)
         if w > -math.inf:
-            return Meeting(w, facet, owner // 3 if owner >= 0 else -1, owner % 3 if owner >= 0 else 0)
-    return Meeting(-math.inf, PLANE, -1, 0)
+            return Meeting(w, facet, owner // PARTS if owner >= 0 else -1, owner % PARTS if owner >= 0 else 0)
+    return OPEN
 
 
 @leaf
@@ -584,10 +666,14 @@ def normal_of(
     s, b = locate(piece, px, py)
     bend = 1.0
     if m.part == BODY:
-        # past the ends of an arc the circle goes on
         tx, ty = tangent_at(piece, s)
         _, slope = scale_at(pattern.scale_table, groove, piece, s)
         bend = 1.0 - piece.curvature * b
+    elif m.part == TAIL_START or m.part == TAIL_FINISH:
+        s = 0.0 if m.part == TAIL_START else piece.length
+        tx, ty = tangent_at(piece, s)
+        f, slope = scale_at(pattern.scale_table, groove, piece, s)
+        slope = 0.0
     else:
         s = 0.0 if m.part == CAP_START else piece.length
         ux, uy = tangent_at(piece, s)

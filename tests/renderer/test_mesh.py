@@ -12,6 +12,7 @@ import pytest
 import trimesh
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
+from numpy.typing import NDArray
 
 from renderer.mesh import SolidMesh, build
 from renderer.tables import (
@@ -55,7 +56,7 @@ class Maker:
 
     def __init__(self, tile: tuple[float, float] = (0.0, 0.0)) -> None:
         self.tile = tile
-        self.pieces: list[tuple[Any, ...]] = []
+        self.pieces: list[NDArray[np.void]] = []
         self.grooves: list[tuple[Any, ...]] = []
         self.profiles: list[tuple[Any, ...]] = []
         self.points: Points = []
@@ -86,9 +87,14 @@ class Maker:
         ends: tuple[int, int] = (FLAT, FLAT), mitres: tuple[float, float] = (0.0, 0.0),
         t: tuple[float, float] = (0.0, 1.0), size: float = 1.0, closed: bool = False,
     ) -> None:  # fmt: skip
-        self.pieces.append(
-            (*start, math.cos(angle), math.sin(angle), length, curvature, *t, *mitres, size, groove, *ends, closed, 0)
-        )
+        row = np.zeros(1, PIECE)
+        row["x"], row["y"], row["tx"], row["ty"] = *start, math.cos(angle), math.sin(angle)
+        row["length"], row["curvature"], row["size"], row["groove"] = length, curvature, size, groove
+        row["t0"], row["t1"] = t
+        row["start_mitre"], row["finish_mitre"] = mitres
+        row["start_end"], row["finish_end"] = ends
+        row["closed"], row["ended"] = closed, PROFILE in ends
+        self.pieces.append(row)
 
     def line(self, groove: int, a: tuple[float, float], b: tuple[float, float], **more: Any) -> None:
         self.piece(groove, a, math.atan2(b[1] - a[1], b[0] - a[0]), math.dist(a, b), **more)
@@ -111,11 +117,11 @@ class Maker:
         none = np.zeros(0, np.int32)
         grid = Grid(np.zeros(2), np.ones(2), none, np.array(self.tile), none, none)
         points = np.array(self.points).reshape(-1, 2)
-        most = max((g[-1] for g in self.grooves), default=1.0) * max((p[10] for p in self.pieces), default=1.0)
+        most = max((g[-1] for g in self.grooves), default=1.0) * max((float(p["size"][0]) for p in self.pieces), default=1.0)
         height, depth = max(points[:, 1].max(initial=0.0), 0.0) * most, max(-points[:, 1].min(initial=0.0), 0.0) * most
         width = np.abs(points[:, 0]).max(initial=0.0) * most
         return Pattern(
-            grid, np.array(self.pieces, PIECE), np.array(self.grooves, GROOVE), np.array(self.profiles, PROFILE_ROW),
+            grid, np.concatenate([np.zeros(0, PIECE), *self.pieces]), np.array(self.grooves, GROOVE), np.array(self.profiles, PROFILE_ROW),
             points, np.array(self.slots, np.int32), np.array(self.table, np.float64).reshape(-1, 2),
             float(height), float(depth), float(width), 2.0 * float(width), False,
         )  # fmt: skip
@@ -126,7 +132,8 @@ class Maker:
 
 def scale_at(pattern: Pattern, piece: np.void, s: float) -> float:
     groove = pattern.grooves[piece["groove"]]
-    t = float(piece["t0"]) + (float(piece["t1"]) - float(piece["t0"])) * s / float(piece["length"])
+    along = min(max(s / float(piece["length"]), 0.0), 1.0)  # past the ends it keeps the end's value
+    t = float(piece["t0"]) + (float(piece["t1"]) - float(piece["t0"])) * along
     a, b, c = float(groove["scale_a"]), float(groove["scale_b"]), float(groove["scale_c"])
     f = 1.0
     if groove["scale_kind"] == SCALE_LINEAR:
