@@ -13,6 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.crossings import find_crossings
 from renderer.geometry.pieces import point_at
 from renderer.kernel import kernel
 from renderer.tables import Floats, Grid, Ints
@@ -21,6 +22,7 @@ FINEST = 1024  # cells along one side at most
 CELLS = 1 << 18  # cells in all at most
 ENTRY = 0.05  # what an entry a piece costs, in pieces looked at a query
 ENTRIES = 40  # a piece at most, on average, as estimated: about half the memory of patterns that have more
+CROSSINGS = 64  # a piece that are kept; where there are more, hardly a footprint is without
 ARC_CHORD = 0.05  # an arc is listed by chords that leave it by this part of a cell, and by the cells so near to them
 
 
@@ -44,7 +46,18 @@ def build(pieces: NDArray[np.void], tile: tuple[float, float] | None, width: flo
     np.cumsum(counts, out=first[1:])
     items = np.empty(int(first[-1]), np.int32)
     rasterize(pieces, low, cell, shape, counts, first, items)
-    return Grid(low, cell, shape, np.array(tile or (0.0, 0.0)), first, items)
+    crossings = find_crossings(pieces, low, cell, shape, first, items, CROSSINGS * len(pieces))
+    return Grid(
+        low, cell, shape, np.array(tile or (0.0, 0.0)), first, items, crossings, _starts(crossings, low, cell, shape)
+    )
+
+
+def _starts(crossings: Floats, low: Floats, cell: Floats, shape: Ints) -> Ints:
+    """Where each cell's crossings begin, for crossings in the order of their cells; (0,) where there are none."""
+    if not len(crossings):
+        return np.zeros(0, np.int32)
+    at = np.floor((crossings - low) / cell).astype(np.int64)
+    return np.searchsorted(at[:, 1] * shape[0] + at[:, 0], np.arange(shape[0] * shape[1] + 1)).astype(np.int32)
 
 
 def _resolution(run: Floats, size: Floats, width: float) -> tuple[int, int]:

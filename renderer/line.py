@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.pieces import locate, scale_at, tangent_at
-from renderer.geometry.query import Nearby, find, nearby
+from renderer.geometry.query import Nearby, find, nearby, over_crossing
 from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, shifts, spans
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel, leaf
@@ -136,12 +136,17 @@ def turn_lights(
 
 
 @leaf
-def find_around(pattern: Pattern, view: View, eye_p: float, eye_q: float, work: Work) -> int:
-    """Find the pieces whose cross-sections may be seen through the footprint, or stand in its light."""
+def find_around(strict: bool, pattern: Pattern, view: View, eye_p: float, eye_q: float, work: Work) -> int:
+    """Find the pieces whose cross-sections may be seen through the footprint, or stand in its light: how many.
+
+    strict: -1 where paths cross in the footprint's bounds.
+    """
     lp, hp, lq, hq = 0.0, 0.0, 0.0, 0.0
     for k in range(4):
         p, q = on_plane(view, float(k & 1), float(k >> 1))
         lp, hp, lq, hq = min(lp, p - view.p), max(hp, p - view.p), min(lq, q - view.q), max(hq, q - view.q)
+    if strict and over_crossing(pattern, view.p + lp, view.q + lq, view.p + hp, view.q + hq):
+        return -1
     if pattern.height > 0.0:
         lp, hp = shifts(pattern.height, 0.0, eye_p, 0.0, lp, hp)
         lq, hq = shifts(pattern.height, 0.0, eye_q, 0.0, lq, hq)
@@ -406,7 +411,7 @@ def line(
         if strict and (not clear or eye_w <= LEVEL * pattern.height):
             continue
         eye_p, eye_q = (frame.eye[0] - view.p) / eye_w, (frame.eye[1] - view.q) / eye_w
-        count = find_around(pattern, view, eye_p, eye_q, work)
+        count = find_around(strict, pattern, view, eye_p, eye_q, work)
         if strict and count < 0:
             continue
         if not ridged and not crosses_groove(pattern, work.found, count, view):

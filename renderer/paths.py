@@ -13,13 +13,16 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
-import svgelements
 from numpy.typing import NDArray
 
 from renderer.biarc import LARGEST_ARC, MOST_SEGMENTS, Curve, arc_over, at, ends, fit, turned
 from renderer.tables import SEGMENT, Chain, Floats
+
+if TYPE_CHECKING:
+    import svgelements
 
 Point = tuple[float, float]
 
@@ -141,6 +144,8 @@ def svg(d: str, flip_y: bool, tolerance: float) -> list[Chain]:
     """
     if not tolerance > 0:
         raise ValueError(f"expected a tolerance above 0, found {tolerance}")
+    import svgelements  # slow to load, and only SVG paths need it
+
     chains: list[Chain] = []
     total = 0
     for elements, closed in _subpaths(svgelements.Path(_canonical(d)), -1.0 if flip_y else 1.0, tolerance):

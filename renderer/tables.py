@@ -95,6 +95,8 @@ class Grid(NamedTuple):
     tile: Floats  # (2,) period along p and q; 0, 0 where the pattern does not repeat
     first: Ints  # (nx * ny + 1,) where the list of cell (ix, iy), row iy * nx + ix, begins in `items`
     items: Ints  # rows of PIECE, ascending within a cell
+    crossings: Floats  # (m, 2) where centre lines cross, pattern units, in the order of the cells
+    crossing_first: Ints  # (nx * ny + 1,) where those of a cell begin; (0,) where there are none
 
 
 class Pattern(NamedTuple):
@@ -115,7 +117,10 @@ class Pattern(NamedTuple):
 
 
 BARE = Pattern(
-    Grid(np.zeros(2), np.ones(2), np.zeros(2, np.int32), np.zeros(2), np.zeros(1, np.int32), np.zeros(0, np.int32)),
+    Grid(
+        np.zeros(2), np.ones(2), np.zeros(2, np.int32), np.zeros(2), np.zeros(1, np.int32), np.zeros(0, np.int32),
+        np.zeros((0, 2)), np.zeros(0, np.int32),
+    ),
     np.zeros(0, PIECE), np.zeros(0, GROOVE), np.zeros(0, PROFILE_ROW), np.zeros((0, 2)), np.zeros(0, np.int32),
     np.zeros((0, 2)), 0.0, 0.0, 0.0, 0.0, True,
 )  # fmt: skip

@@ -76,3 +76,27 @@ def find(pattern: Pattern, found: Nearby, x0: float, y0: float, x1: float, y1: f
                         found.shift[count, 1] = dy
                         count += 1
     return count
+
+
+@leaf
+def over_crossing(pattern: Pattern, x0: float, y0: float, x1: float, y1: float) -> bool:
+    """Whether paths of one repetition of the tile cross in the rectangle (001, 4.2)."""
+    grid = pattern.grid
+    if len(grid.crossings) == 0:
+        return False
+    if grid.tile[0] > 0.0:  # the rectangle's repetition; what lies across a border is left to the pieces found
+        dx = math.floor((0.5 * (x0 + x1) - grid.origin[0]) / grid.tile[0]) * grid.tile[0]
+        dy = math.floor((0.5 * (y0 + y1) - grid.origin[1]) / grid.tile[1]) * grid.tile[1]
+        x0, x1, y0, y1 = x0 - dx, x1 - dx, y0 - dy, y1 - dy
+    low_x = int(max((x0 - grid.origin[0]) / grid.cell[0], 0.0))
+    low_y = int(max((y0 - grid.origin[1]) / grid.cell[1], 0.0))
+    high_x = int(min((x1 - grid.origin[0]) / grid.cell[0], grid.shape[0] - 1.0))
+    high_y = int(min((y1 - grid.origin[1]) / grid.cell[1], grid.shape[1] - 1.0))
+    for iy in range(low_y, high_y + 1):
+        for ix in range(low_x, high_x + 1):
+            cell = iy * grid.shape[0] + ix
+            for k in range(grid.crossing_first[cell], grid.crossing_first[cell + 1]):
+                x, y = grid.crossings[k, 0], grid.crossings[k, 1]
+                if x0 <= x <= x1 and y0 <= y <= y1:
+                    return True
+    return False
