@@ -115,7 +115,7 @@ class Maker:
 
     def pattern(self) -> Pattern:
         none = np.zeros(0, np.int32)
-        grid = Grid(np.zeros(2), np.ones(2), none, np.array(self.tile), none, none)
+        grid = Grid(np.zeros(2), np.ones(2), none, np.array(self.tile), none, none, np.zeros((0, 2)), none)
         points = np.array(self.points).reshape(-1, 2)
         most = max((g[-1] for g in self.grooves), default=1.0) * max((float(p["size"][0]) for p in self.pieces), default=1.0)
         height, depth = max(points[:, 1].max(initial=0.0), 0.0) * most, max(-points[:, 1].min(initial=0.0), 0.0) * most
