@@ -54,7 +54,9 @@ class Footprints(NamedTuple):
 
 def rays(camera: Camera, x: Floats, y: Floats) -> Floats:
     """Directions (n, 3) of the rays through screen points, pixels; not unit vectors."""
-    return camera.corner + x[:, None] * camera.right + y[:, None] * camera.down
+    return np.stack(
+        [c + x * r + y * d for c, r, d in zip(camera.corner, camera.right, camera.down, strict=True)], axis=1
+    )
 
 
 def flat_frames(shapes: Shapes, origin: Floats) -> dict[int, NDArray[np.void]]:
@@ -96,11 +98,7 @@ def footprints(
         else:
             smooth = np.ones(len(middle), np.bool_)
         keep = np.flatnonzero(smooth & (middle["object"] >= 0))
-        done.append(
-            _framed(
-                shapes, camera, flat, pixel[keep], x[keep], y[keep], size, middle_rays[keep], middle[keep], mask[keep]
-            )
-        )
+        done.append(_framed(shapes, camera, flat, pixel, x, y, size, middle_rays, middle, mask, keep))
         split = ~smooth
         if not split.any():
             break
@@ -129,23 +127,25 @@ def _inside(x: Floats, y: Floats, seed: int) -> Floats:
 
 def _framed(
     shapes: Shapes, camera: Camera, flat: dict[int, NDArray[np.void]], pixel: Ints, x: Floats, y: Floats, size: float,
-    directions: Floats, hits: NDArray[np.void], mask: NDArray[np.uint64],
+    directions: Floats, hits: NDArray[np.void], mask: NDArray[np.uint64], keep: NDArray[np.int64],
 ) -> Footprints:  # fmt: skip
-    """Footprints with the frames of their centres' hits; those of a rectangle share one."""
-    out = np.zeros(len(hits), FOOTPRINT)
-    out["pixel"], out["x"], out["y"], out["size"], out["blocked"] = pixel, x, y, size, mask
+    """The footprints among the squares (n,) that `keep` lists, with frames; those of a rectangle share one."""
+    out = np.zeros(len(keep), FOOTPRINT)
+    out["pixel"], out["x"], out["y"], out["blocked"] = pixel[keep], x[keep], y[keep], mask[keep]
+    out["size"] = size
     shared: list[NDArray[np.void]] = []
-    rest = np.ones(len(hits), np.bool_)
+    rest = np.ones(len(keep), np.bool_)
+    seen = hits["object"][keep]
     for row, frame in flat.items():
-        of = hits["object"] == row
+        of = seen == row
         if of.any():
             out["frame"][of] = len(shared)
             shared.append(frame)
             rest &= ~of
-    count = int(rest.sum())
-    out["frame"][rest] = len(shared) + np.arange(count)
-    if count:
-        shared.append(shapes.frames(camera.origin, directions[rest], hits[rest]))
+    curved = keep[rest]
+    out["frame"][rest] = len(shared) + np.arange(len(curved))
+    if len(curved):
+        shared.append(shapes.frames(camera.origin, directions[curved], hits[curved]))
     return Footprints(out, np.concatenate(shared) if shared else np.zeros(0, FRAME))
 
 
