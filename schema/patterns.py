@@ -48,7 +48,8 @@ class Groove(Model):
     )
     ends: Literal["profile", "flat"] = Field(
         default="profile",
-        description="How an open path ends: closed with the groove's own right half, or cut square at the end point. "
+        description="How an open path ends: closed with the right half of the groove's profile (b > 0), or cut "
+        "square at the end point. A wall that no facet makes is of the object's material. "
         "Default: profile.",
     )
     repeat: Repeat | None = Field(default=None, description="Copies of the groove. Default: null, just the one.")

@@ -62,7 +62,7 @@ class Mapping(Model):
 
 
 class Object(Model):
-    """A shape in the world with its material and, engraved, its pattern."""
+    """A shape in the world with its material and, engraved, its pattern. Seen from behind a surface is bare."""
 
     shape: Shape = Field(description="The bare surface.")
     translate: Point3 = Field(

@@ -8,7 +8,10 @@ from .base import FileName, Length, Model, Size2
 
 
 class Rectangle(Model):
-    """In the xy plane, centred, normal +z; uv (0, 0) at its lower left, (1, 1) at its upper right."""
+    """In the xy plane, centred, normal +z; uv (0, 0) at its lower left, (1, 1) at its upper right.
+
+    A window on an engraved plane: what lies under its edge, or shades it from outside, is the pattern gone on.
+    """
 
     type: Literal["rectangle"] = Field(description="The kind of shape.")
     size: Size2 = Field(description="[width, height] along x and y, world units.")
@@ -33,7 +36,7 @@ class Cylinder(Model):
 
 
 class Mesh(Model):
-    """Triangles from a file, with its own uv."""
+    """Triangles from a file, with its own uv. Smooth where the file has normals, else with flat facets."""
 
     type: Literal["mesh"] = Field(description="The kind of shape.")
     file: FileName = Field(description="An OBJ, PLY or GLB file with uv, relative to the scene file.")
