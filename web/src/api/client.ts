@@ -1,7 +1,7 @@
 /** Calls of the REST service. Every failure is a ServiceError that says what to tell the user. */
 import type { paths } from "../../generated/schema";
 import type { Json } from "../model/json";
-import type { Examples, Finding, Health, ProblemDocument, Validation } from "./types";
+import type { Examples, Finding, Health, ProblemDocument, UploadedMesh, Validation } from "./types";
 
 type Route = keyof paths;
 type RenderQuery = NonNullable<paths["/api/render"]["post"]["parameters"]["query"]>;
@@ -56,6 +56,13 @@ export async function render(scene: Json, query: RenderQuery, signal: AbortSigna
   }
   const route = `/api/render?${parameters}` as Route;
   return (await call(route, post(scene, signal, "image/png, application/problem+json"))).blob();
+}
+
+/** Hands a mesh to the service; what a scene says as `file` to use it. */
+export async function uploadMesh(file: File): Promise<string> {
+  const route = `/api/meshes?name=${encodeURIComponent(file.name)}` as Route;
+  const headers = { "Content-Type": "application/octet-stream" };
+  return ((await (await call(route, { method: "POST", body: file, headers })).json()) as UploadedMesh).file;
 }
 
 export async function exampleNames(): Promise<string[]> {

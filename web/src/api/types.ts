@@ -7,6 +7,7 @@ export type Finding = Schemas["Finding"];
 export type ProblemDocument = Schemas["ProblemDocument"];
 export type Validation = Schemas["Validation"];
 export type Health = Schemas["Health"];
+export type UploadedMesh = Schemas["UploadedMesh"];
 export type Examples = Schemas["Examples"];
 
 export type Scene = Schemas["Scene"];

@@ -11,7 +11,7 @@ export interface Sun {
 /** `direction` is the way the light travels; a sun stands where it comes from. */
 export function sunOf(direction: Json | undefined): Sun {
   const [x, y, z] = numbers(direction, [0, 0, -1] as const);
-  return { azimuth: degrees(Math.atan2(-y, -x)), elevation: degrees(Math.atan2(-z, Math.hypot(x, y))) };
+  return { azimuth: degrees(Math.atan2(0 - y, 0 - x)), elevation: degrees(Math.atan2(0 - z, Math.hypot(x, y))) };
 }
 
 export function directionOf({ azimuth, elevation }: Sun): Vector3 {

@@ -1,6 +1,7 @@
 /** The object that the canvas shows: its shape, material and the mapping of the pattern onto it. */
+import { uploadMesh } from "../api/client";
 import type { Editor } from "../model/editor";
-import { entry, text } from "../model/json";
+import { entry, text, type Place } from "../model/json";
 import { kind, materialNames, objects, patternNames } from "../model/scene";
 import { h } from "../ui/dom";
 import { Fields } from "../ui/fields";
@@ -39,6 +40,7 @@ export function objectPanel(editor: Editor): PanelPlan {
       return [
         ...unionFields(fields, { label: "Shape", place: [...place, "shape"], kinds: shapes, otherwise: "rectangle",
           offered: ["rectangle", "sphere", "cylinder"] }),
+        meshUpload(editor, [...place, "shape"]),
         fields.select({ label: "Material", place: [...place, "material"], otherwise: text(names[0]?.[0], "") }, names),
         fields.select({ label: "Pattern", place: [...place, "pattern"], otherwise: null }, [["", "None"], ...patterns], putPattern),
         fields.tuple({ label: "Units a uv", place: [...place, "mapping", "scale"], otherwise: [1, 1] }, ["p", "q"]),
@@ -46,4 +48,22 @@ export function objectPanel(editor: Editor): PanelPlan {
       ];
     },
   };
+}
+
+/** The service reads no files of its own machine: a mesh is handed to it. */
+function meshUpload(editor: Editor, shape: Place): HTMLElement {
+  const input = h("input", { type: "file", accept: ".obj,.ply,.glb", hidden: true });
+  const said = h("span", { class: "muted", "aria-live": "polite" });
+  input.addEventListener("change", () => {
+    const file = input.files?.[0];
+    input.value = "";
+    if (!file) return;
+    said.textContent = `Uploading ${file.name}…`;
+    uploadMesh(file).then(
+      (name) => editor.set(shape, { type: "mesh", file: name }, null),
+      (error: unknown) => (said.textContent = error instanceof Error ? error.message : String(error)),
+    );
+  });
+  const button = h("button", { type: "button", title: "OBJ, PLY or GLB, with uv", onclick: () => input.click() }, ["Use a mesh file…"]);
+  return h("div", { class: "buttons" }, [button, input, said]);
 }

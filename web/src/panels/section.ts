@@ -16,9 +16,9 @@ export function sectionDrawing(profile: Json | undefined): SVGElement {
   const surface = high > -low ? HEIGHT - MARGIN + low * scale : MARGIN + high * scale;
   const x = (b: number): number => WIDTH / 2 + (b - (left + right) / 2) * scale;
   const profileLine = points.map(([b, w]) => `${x(b).toFixed(2)},${(surface - w * scale).toFixed(2)}`).join(" ");
-  const outline = `0,${surface} ${profileLine} ${WIDTH},${surface}`;
+  const outline = `${-WIDTH},${surface} ${profileLine} ${2 * WIDTH},${surface}`;
   return s("svg", attributes, [
-    s("polygon", { points: `${outline} ${WIDTH},${HEIGHT} 0,${HEIGHT}`, class: "solid" }),
+    s("polygon", { points: `${outline} ${2 * WIDTH},${HEIGHT} ${-WIDTH},${HEIGHT}`, class: "solid" }),
     s("polyline", { points: outline, class: "edge" }),
     s("line", { x1: x(0), x2: x(0), y1: 2, y2: HEIGHT - 2, class: "axis" }),
   ]);

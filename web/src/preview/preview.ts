@@ -21,12 +21,12 @@ export class Preview implements View {
   constructor(readonly editor: Editor) {
     const label = "Rendered preview. Drag or use the arrow keys to turn the camera, the wheel or + and − to move closer or away, "
       + "Shift and drag to move across.";
-    this.#stage = h("div", { class: "preview-stage", tabindex: 0, role: "group", "aria-label": label }, [
+    this.#stage = h("div", { class: "preview-stage", tabindex: 0, role: "group", "aria-label": label, title: "Drag turns the camera, the wheel moves it closer, Shift and drag moves it across." }, [
       this.#image, h("div", { class: "preview-bar", "aria-hidden": "true" }),
     ]);
     this.element = h("section", { class: "preview", "aria-label": "Preview" }, [
       this.#stage,
-      h("div", { class: "preview-foot" }, [this.#status, h("span", { class: "muted" }, ["drag turns · wheel moves closer"])]),
+      h("div", { class: "preview-foot" }, [this.#status]),
     ]);
     this.#stage.addEventListener("pointerdown", (event) => this.#drag(event));
     this.#stage.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
@@ -35,10 +35,10 @@ export class Preview implements View {
 
   busy(text: string | null): void {
     this.element.classList.toggle("busy", text !== null);
-    if (text !== null && this.#status.textContent === "" || text?.startsWith("Compiling")) this.#status.textContent = text;
+    if (text !== null && (this.#status.textContent === "" || text.startsWith("Compiling"))) this.#status.textContent = text;
   }
 
-  show({ picture, quality, resolution, seconds, revision }: Rendered): void {
+  show({ picture, quality, size, seconds, revision }: Rendered): void {
     const old = this.#url;
     this.#url = URL.createObjectURL(picture);
     this.#image.onload = () => {
@@ -48,7 +48,7 @@ export class Preview implements View {
     this.#image.src = this.#url;
     this.#image.hidden = false;
     this.element.classList.remove("stale");
-    this.#status.textContent = `${resolution.replace("x", " × ")} · ${seconds.toFixed(2)} s · ${quality.name}`;
+    this.#status.textContent = `${size.width} × ${size.height} · ${seconds.toFixed(2)} s · ${quality.name}`;
   }
 
   failed(text: string): void {

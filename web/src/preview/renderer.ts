@@ -2,7 +2,7 @@
 import { health, render, ServiceError } from "../api/client";
 import type { Finding } from "../api/types";
 import type { Editor } from "../model/editor";
-import { draft, request, sharp, type Quality } from "./settings";
+import { draft, sharp, sizeOf, work, type Quality, type Size } from "./settings";
 
 const SOON = 40; // milliseconds from a change to its draft
 const STILL = 450; // milliseconds without a change until the sharp picture
@@ -12,7 +12,7 @@ const AGAIN = 2000; // milliseconds until a service that does not answer is aske
 export interface Rendered {
   readonly picture: Blob;
   readonly quality: Quality;
-  readonly resolution: string;
+  readonly size: Size;
   readonly seconds: number;
   readonly revision: number;
 }
@@ -26,6 +26,7 @@ export interface View {
 
 export class PreviewRenderer {
   #timer: number | undefined;
+  #pace = Infinity; // seconds a sample of a pixel
   #running: { abort: AbortController; revision: number; since: number; quality: Quality } | null = null;
 
   constructor(
@@ -33,10 +34,20 @@ export class PreviewRenderer {
     readonly view: View,
     readonly refused: (problems: readonly Finding[]) => void,
   ) {
-    editor.store.watch((now, before) => now.revision !== before.revision && this.#changed());
+    editor.store.watch((now, before) => {
+      if (now.opened !== before.opened) this.#opened();
+      else if (now.revision !== before.revision) this.#changed();
+    });
   }
 
   start(): void {
+    this.#later(draft, 0);
+  }
+
+  /** Another document: nothing is known of it, and nothing of the old one is waited for. */
+  #opened(): void {
+    this.#pace = Infinity;
+    this.view.failed("");
     this.#later(draft, 0);
   }
 
@@ -59,12 +70,15 @@ export class PreviewRenderer {
     this.#running = running;
     this.view.busy(quality === draft ? "Rendering…" : "Refining…");
     const waiting = window.setTimeout(() => void this.#explain(running.abort.signal), 1500);
-    const query = request(this.editor.doc, quality);
+    const size = sizeOf(this.editor.doc, quality, this.#pace);
+    const { samples } = size;
+    const resolution = `${size.width}x${size.height}`;
     let next: [Quality, number] | null = quality === draft ? [sharp, STILL] : null;
     try {
-      const picture = await render(this.editor.doc, query, running.abort.signal);
+      const picture = await render(this.editor.doc, { resolution, samples }, running.abort.signal);
       const seconds = (performance.now() - running.since) / 1000;
-      this.view.show({ picture, quality, resolution: query.resolution, seconds, revision });
+      this.#pace = seconds / work(size);
+      this.view.show({ picture, quality, size, seconds, revision });
       this.refused([]);
     } catch (error) {
       if (running.abort.signal.aborted) return;

@@ -2,11 +2,14 @@
 import { example, exampleNames } from "../api/client";
 import { blankScene } from "../model/blank";
 import type { Editor } from "../model/editor";
+import { entry, type Json } from "../model/json";
+import { lights, objects } from "../model/scene";
 import { formatScene, NotAScene, parseScene } from "../model/text";
 import { forgetStyle } from "../tools/newgroove";
 import { h } from "../ui/dom";
 
 const LARGEST = 64 * 1024 * 1024; // bytes
+const FIRST = "tiles"; // the example that a first visit opens, where there is one of this name
 
 export class Files {
   readonly examples = h("select", { "aria-label": "Open an example", class: "examples" }, [h("option", { value: "" }, ["Examples"])]);
@@ -49,15 +52,24 @@ export class Files {
     else if (this.#mayReplace()) this.#openText(await file.text(), file.name);
   }
 
-  /** Fills the menu; `open` starts with the first example. */
+  /** Fills the menu; `open` starts with the first example that needs no file beside it. */
   async loadExamples(open: boolean): Promise<void> {
     try {
       const names = await exampleNames();
       this.examples.append(...names.map((name) => h("option", { value: name }, [name])));
-      const first = names[0];
-      if (open && first !== undefined) await this.openExample(first);
+      if (open) await this.#openFirst([...names].sort((a, b) => Number(b === FIRST) - Number(a === FIRST)));
     } catch {
       this.say("The service does not answer: there are no examples and no preview until it does.");
+    }
+  }
+
+  async #openFirst(names: readonly string[]): Promise<void> {
+    for (const name of names) {
+      const text = await example(name);
+      if (needsNoFile(parseScene(text))) {
+        this.#openText(text, `${name}.json`);
+        return;
+      }
     }
   }
 
@@ -78,7 +90,7 @@ export class Files {
     }
   }
 
-  #open(doc: Parameters<Editor["open"]>[0], name: string): void {
+  #open(doc: Json, name: string): void {
     forgetStyle();
     this.editor.open(doc, name);
     this.say("");
@@ -104,4 +116,9 @@ export class Files {
       void this.read(file);
     });
   }
+}
+
+/** Meshes and pictures of the sky lie beside a scene file, where the service does not look. */
+function needsNoFile(doc: Json): boolean {
+  return ![...objects(doc).map((item) => entry(item, "shape")), ...lights(doc)].some((part) => entry(part, "file") !== undefined);
 }

@@ -66,11 +66,13 @@ export class Shell {
         h("div", { class: "plane-foot" }, [this.#hint, this.#position]),
         problemsList(editor),
       ]),
-      h("aside", { class: "inspector", "aria-label": "Pattern and groove" }, [make(groovesPanel(editor)), make(groovePanel(editor))]),
-      h("aside", { class: "scene", "aria-label": "Scene" }, [
-        this.#preview.element,
-        h("div", { class: "scene-panels" }, [
-          make(lightsPanel(editor)), make(materialsPanel(editor)), make(cameraPanel(editor)), make(objectPanel(editor)),
+      h("div", { class: "side" }, [
+        h("aside", { class: "inspector", "aria-label": "Pattern and groove" }, [make(groovesPanel(editor)), make(groovePanel(editor))]),
+        h("aside", { class: "scene", "aria-label": "Scene" }, [
+          this.#preview.element,
+          h("div", { class: "scene-panels" }, [
+            make(lightsPanel(editor)), make(materialsPanel(editor)), make(cameraPanel(editor)), make(objectPanel(editor)),
+          ]),
         ]),
       ]),
     );
@@ -105,7 +107,7 @@ export class Shell {
 
   #toolChanged(before: ToolName): void {
     if (before !== "select") this.#tools[before].cancel();
-    this.#hint.textContent = this.tool.hint;
+    this.#hint.textContent = this.#hint.title = this.tool.hint;
     this.canvas.element.style.cursor = this.tool.cursor;
     this.canvas.hovered = null;
     this.canvas.repaint();

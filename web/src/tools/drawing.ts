@@ -18,8 +18,8 @@ export class DrawingTool implements Tool {
   #next: PatternPoint | null = null;
 
   constructor(readonly canvas: Canvas, readonly kind: "polyline" | "curve") {
-    const closing = kind === "polyline" ? " · click the first point to close" : "";
-    this.hint = `Click to add points · Enter or double-click to finish${closing} · Shift snaps to the grid · Esc cancels`;
+    const closing = kind === "polyline" ? " · the first point closes" : "";
+    this.hint = `Click adds points · Enter or double-click finishes${closing} · Shift snaps · Esc cancels`;
   }
 
   down(event: ToolEvent): void {

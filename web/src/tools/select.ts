@@ -19,7 +19,7 @@ const ARROWS: Record<string, readonly [number, number]> = {
 };
 
 export class SelectTool implements Tool {
-  readonly hint = "Click selects · drag moves a groove, a point or the plane · double-click adds a point · Del removes";
+  readonly hint = "Drag moves a groove, a point or the plane · double-click adds a point";
   readonly cursor = "default";
   #drag: Drag | null = null;
   #drags = 0;
