@@ -148,11 +148,12 @@ def find_around(strict: bool, pattern: Pattern, view: View, eye_p: float, eye_q:
     if strict and over_crossing(pattern, view.p + lp, view.q + lq, view.p + hp, view.q + hq):
         return -1
     if pattern.height > 0.0:
-        lp, hp = shifts(pattern.height, 0.0, eye_p, 0.0, lp, hp)
-        lq, hq = shifts(pattern.height, 0.0, eye_q, 0.0, lq, hq)
+        left, right = shifts(pattern.height, 0.0, eye_p, 0.0, 0.0, 0.0)
+        down, up = shifts(pattern.height, 0.0, eye_q, 0.0, 0.0, 0.0)
         for l in range(len(work.light)):
-            lp, hp = shifts(pattern.height, 0.0, eye_p, work.towards[l, 0], lp, hp)
-            lq, hq = shifts(pattern.height, 0.0, eye_q, work.towards[l, 1], lq, hq)
+            left, right = shifts(pattern.height, 0.0, eye_p, work.towards[l, 0], left, right)
+            down, up = shifts(pattern.height, 0.0, eye_q, work.towards[l, 1], down, up)
+        lp, hp, lq, hq = lp + left, hp + right, lq + down, hq + up
     m = pattern.reach
     return find(pattern, work.found, view.p + lp - m, view.q + lq - m, view.p + hp + m, view.q + hq + m, CAPACITY)
 
@@ -207,15 +208,16 @@ def reach_along(pattern: Pattern, view: View, eye_p: float, eye_q: float, tx: fl
     length = max(-long_low, long_high)
     room = 2.0 * pattern.width
     deep = pattern.depth if abs(eye_b) * pattern.depth <= room else room / abs(eye_b)
-    wide_low, wide_high = shifts(pattern.height, deep, eye_b, 0.0, low, high)
-    long_low, long_high = shifts(pattern.height, deep, eye_t, 0.0, long_low, long_high)
+    wide_low, wide_high = shifts(pattern.height, deep, eye_b, 0.0, 0.0, 0.0)
+    back, forth = shifts(pattern.height, deep, eye_t, 0.0, 0.0, 0.0)
     for l in range(len(work.light)):
         if work.light[l, 3] != 0.0:
             light_b = work.towards[l, 0] * bx + work.towards[l, 1] * by
             light_t = work.towards[l, 0] * tx + work.towards[l, 1] * ty
             below = deep if abs(light_b) * deep <= room else room / abs(light_b)
             wide_low, wide_high = shifts(pattern.height, below, eye_b, light_b, wide_low, wide_high)
-            long_low, long_high = shifts(pattern.height, below, eye_t, light_t, long_low, long_high)
+            back, forth = shifts(pattern.height, below, eye_t, light_t, back, forth)
+    wide_low, wide_high, long_low, long_high = low + wide_low, high + wide_high, long_low + back, long_high + forth
     return Reach(tx, ty, eye_t, eye_b, low, high, length, wide_low, wide_high, long_low, long_high)
 
 

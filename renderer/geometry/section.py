@@ -80,8 +80,8 @@ def along(view: View, bx: float, by: float, y: float) -> float:
 
 @leaf
 def shifts(height: float, depth: float, eye: float, light: float, lowest: float, highest: float) -> tuple[float, float]:
-    """[lowest, highest] widened to the shifts along one axis from a footprint to what is seen through it at heights
-    -depth .. height, and on to what may shade that.
+    """[lowest, highest] widened to the shifts along one axis from a point of the base plane to what is seen through it
+    at heights -depth .. height, and on to what may shade that.
 
     `eye` and `light`: the shift for a unit of height towards each, pattern units.
     """
