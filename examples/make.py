@@ -198,7 +198,7 @@ def hieroglyphs() -> Json:
         "intaglio": 1,
         "camera": {"origin": [-1.1, -7.6, 3.6], "target": [0.35, 0, 3.3], "fov": 38, "resolution": [640, 480]},
         "lights": [
-            {"type": "directional", "direction": [1, 0.75, -0.6], "irradiance": [3.6, 3, 2.2]},
+            {"type": "directional", "direction": [1, 0.36, -0.5], "irradiance": [4, 3.4, 2.5]},
             {"type": "point", "position": [3.6, -4.5, 4.6], "intensity": [7, 8.5, 12]},
             {"type": "constant", "radiance": [0.07, 0.085, 0.12]},
         ],
@@ -216,7 +216,7 @@ def hieroglyphs() -> Json:
                 "material": "sandstone",
                 "pattern": "writing",
             }
-            for x, y, turn in ((-0.75, 0, -130), (2.5, 2.4, -73))
+            for x, y, turn in ((-0.75, 0, -130), (2.9, 3.7, -73))
         ]
         + [
             {
