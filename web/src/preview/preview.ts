@@ -51,6 +51,11 @@ export class Preview implements View {
     this.#status.textContent = `${size.width} × ${size.height} · ${seconds.toFixed(2)} s · ${quality.name}`;
   }
 
+  clear(): void {
+    this.#image.hidden = true;
+    this.#status.textContent = "";
+  }
+
   failed(text: string): void {
     this.element.classList.add("stale");
     this.#status.textContent = text;

@@ -20,6 +20,8 @@ export interface Rendered {
 export interface View {
   busy(text: string | null): void;
   show(rendered: Rendered): void;
+  /** The picture is none of this document's. */
+  clear(): void;
   /** The document cannot be rendered, for its problems or for what the text says. */
   failed(text: string): void;
 }
@@ -47,7 +49,7 @@ export class PreviewRenderer {
   /** Another document: nothing is known of it, and nothing of the old one is waited for. */
   #opened(): void {
     this.#pace = Infinity;
-    this.view.failed("");
+    this.view.clear();
     this.#later(draft, 0);
   }
 
@@ -95,7 +97,7 @@ export class PreviewRenderer {
 
   #failed(error: unknown, quality: Quality): [Quality, number] | null {
     if (!(error instanceof ServiceError)) throw error;
-    this.view.failed(error.problems.length ? "The scene has problems; this is the last picture without." : error.message);
+    this.view.failed(error.problems.length ? "The scene has problems: no new picture until they are solved." : error.message);
     if (error.status === 422) this.refused(error.problems);
     if (error.status === 0) return [draft, AGAIN];
     return error.retryAfter !== null ? [quality, error.retryAfter] : null;
