@@ -2,6 +2,8 @@
 
     python -m bench [error] [speed] [memory] [startup]
 
+Takes about ten minutes on two cores, nearly all of them for the references.
+
 Accuracy is the root of the mean square of the difference in linear radiance, over all three channels. The reference
 is method `geometry`: the solid as a mesh, traced by Embree. A deterministic method has bias where a sampled one has
 variance, so both are given, and what the reference itself is worth.

@@ -13,6 +13,7 @@ from renderer import pipeline
 from renderer.compile import PatternCache
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+PATIENCE = 10  # seconds after which a render is worth a line on the terminal
 Floats = NDArray[np.float64]
 
 
@@ -35,7 +36,10 @@ def timed(
     """The radiance, the seconds of the whole frame by the clock, and all else of it."""
     begin = time.perf_counter()
     picture = pipeline.render(scene, method=method, resolution=resolution, samples=samples, patterns=patterns)
-    return picture.radiance.astype(np.float64), time.perf_counter() - begin, picture
+    seconds = time.perf_counter() - begin
+    if seconds > PATIENCE:
+        print(f"  {method}, {samples} samples: {seconds:.0f} s", flush=True)
+    return picture.radiance.astype(np.float64), seconds, picture
 
 
 def inside(scene: schema.Scene, resolution: tuple[int, int]) -> NDArray[np.bool_]:
