@@ -21,13 +21,14 @@ from renderer import CACHE, film, mesh, shading
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import csg
 from renderer.errors import Cancelled, Fault, RenderError
-from renderer.footprint import Tile, flat_frames, footprints
+from renderer.footprint import Footprints, Tile, flat_frames, footprints
 from renderer.line import LOOSE, NOT_MINE, PAPER, STRICT, line
 from renderer.raycast import Caster
 from renderer.tables import BARE, BASE, RECTANGLE, Floats, Pattern
 from renderer.trace import Solid, trace
 
 TILE = 64  # pixels
+MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "csg", "geometry")
 AOVS = ("method",)
 
@@ -78,35 +79,16 @@ class Frame:
         method = np.full(len(seen.footprints), BASE, np.uint8)
         of = seen.frames["object"][seen.footprints["frame"]]
         grooved = seen.frames["grooved"][seen.footprints["frame"]] != 0
-        shaded = sampled = 0.0
+        spent: dict[str, float] = {}
         for row in np.unique(of):
-            carries = grooved & (scene.objects["pattern"][row] >= 0) & (settings.method != "base")
+            index = scene.objects["pattern"][row]
+            carries = grooved & (index >= 0) & (settings.method != "base")
             for pattern, chosen in (
                 (BARE, np.flatnonzero((of == row) & ~carries)),
-                (scene.patterns[scene.objects["pattern"][row]], np.flatnonzero((of == row) & carries)),
+                (scene.patterns[index] if index >= 0 else BARE, np.flatnonzero((of == row) & carries)),
             ):
-                if not len(chosen):
-                    continue
-                rest = (
-                    seen.frames, scene.camera, scene.lighting, scene.materials, scene.slots[row], self.albedo,
-                    radiance, method,
-                )  # fmt: skip
-                start = clock()
-                if pattern is BARE:
-                    line(LOOSE, pattern, seen.footprints, chosen, *rest)
-                elif settings.method == "geometry":
-                    trace(self.solids[row], settings.samples, settings.seed, seen.footprints, chosen, *rest)
-                elif settings.method == "csg":
-                    csg(settings.samples, False, settings.seed, pattern, seen.footprints, chosen, *rest)
-                else:
-                    mode = {"auto": STRICT, "line": LOOSE, "segment": PAPER}[settings.method]
-                    line(mode, pattern, seen.footprints, chosen, *rest)
-                middle = clock()
-                shaded += middle - start
-                left = chosen[method[chosen] == NOT_MINE]
-                if len(left):
-                    csg(settings.samples, True, settings.seed, pattern, seen.footprints, left, *rest)
-                    sampled += clock() - middle
+                if len(chosen):
+                    self._shade(row, pattern, seen, chosen, radiance, method, spent)
         start = clock()
         image = np.empty((tile.width * tile.height, 3))
         methods = np.empty(tile.width * tile.height, np.uint8)
@@ -114,7 +96,36 @@ class Frame:
         rows, columns = slice(tile.y, tile.y + tile.height), slice(tile.x, tile.x + tile.width)
         self.radiance[rows, columns] = image.reshape(tile.height, tile.width, 3)
         self.method[rows, columns] = methods.reshape(tile.height, tile.width)
-        return {"cast": cast - begin, "line": shaded, "csg": sampled, "film": clock() - start}
+        return spent | {"cast": cast - begin, "film": clock() - start}
+
+    def _shade(
+        self, row: int, pattern: Pattern, seen: Footprints, chosen: NDArray[np.int64], radiance: Floats,
+        method: NDArray[np.uint8], spent: dict[str, float],
+    ) -> None:  # fmt: skip
+        """Shade the footprints `chosen` of one object by the method asked for; add up the seconds of each kernel."""
+        scene, settings = self.scene, self.settings
+        rest = (
+            seen.frames, scene.camera, scene.lighting, scene.materials, scene.slots[row], self.albedo, radiance, method
+        )  # fmt: skip
+
+        def timed(name: str, start: float) -> None:
+            spent[name] = spent.get(name, 0.0) + time.perf_counter() - start
+
+        start = time.perf_counter()
+        if settings.method == "geometry" and pattern is not BARE:
+            trace(self.solids[row], settings.samples, settings.seed, seen.footprints, chosen, *rest)
+            return timed("geometry", start)
+        if settings.method == "csg" and pattern is not BARE:
+            csg(settings.samples, False, settings.seed, pattern, seen.footprints, chosen, *rest)
+            return timed("csg", start)
+        line(MODES.get(settings.method, LOOSE), pattern, seen.footprints, chosen, *rest)
+        timed("line", start)
+        left = chosen[method[chosen] == NOT_MINE]
+        if len(left):
+            start = time.perf_counter()
+            csg(settings.samples, True, settings.seed, pattern, seen.footprints, left, *rest)
+            timed("csg", start)
+        return None
 
 
 def render(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass, field
 from functools import partial
@@ -107,7 +108,7 @@ async def example(request: Request, name: str) -> Response:
     folder = shop(request).settings.examples
     if name not in await anyio.to_thread.run_sync(_examples, folder):
         raise ProblemError(404, f"There is no example {name[:100]!r}.")
-    text = await anyio.to_thread.run_sync((folder / f"{name}.json").read_bytes)
+    text = await anyio.to_thread.run_sync(_example, folder, name, shop(request).meshes)
     return Response(text, media_type="application/json")
 
 
@@ -245,3 +246,13 @@ def _parameter(detail: str) -> ProblemError:
 
 def _examples(folder: Path) -> list[str]:
     return sorted(path.stem for path in folder.glob("*.json") if _EXAMPLE.fullmatch(path.stem))
+
+
+def _example(folder: Path, name: str, meshes: MeshStore) -> bytes:
+    """The scene, its mesh files uploaded: the service reads none from a path that a scene names."""
+    scene = json.loads((folder / f"{name}.json").read_bytes())
+    for item in scene["objects"]:
+        file = item["shape"].get("file")
+        if file is not None:
+            item["shape"]["file"] = PREFIX + meshes.put((folder / file).read_bytes(), Path(file).suffix)
+    return json.dumps(scene, indent=2).encode()

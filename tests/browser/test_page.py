@@ -115,7 +115,6 @@ def test_without_its_last_groove_the_plate_is_bare_and_can_be_drawn_on(editor: E
     assert document["objects"][0]["pattern"] in document["patterns"]
 
 
-@pytest.mark.xfail(strict=False, reason="the renderer stumbles over a scene in which there is no pattern at all")
 def test_a_new_scene_is_rendered(editor: Editor) -> None:
     editor.page.get_by_role("button", name="New").click()
     expect(editor.page.locator(".file-name")).to_have_text("untitled.json")
