@@ -251,7 +251,7 @@ def _examples(folder: Path) -> list[str]:
 def _example(folder: Path, name: str, meshes: MeshStore) -> bytes:
     """The scene, its mesh files uploaded: the service reads none from a path that a scene names."""
     scene = json.loads((folder / f"{name}.json").read_bytes())
-    for item in scene["objects"]:
+    for item in scene.get("objects", []):
         file = item["shape"].get("file")
         if file is not None:
             item["shape"]["file"] = PREFIX + meshes.put((folder / file).read_bytes(), Path(file).suffix)

@@ -101,3 +101,16 @@ def test_openapi_has_the_scenes_models(client: TestClient) -> None:
         for operation in operations.values():
             success = next(a for status, a in operation["responses"].items() if status.startswith("2"))
             assert success["content"]
+
+
+def test_an_example_brings_its_mesh(client: TestClient) -> None:
+    files = [
+        item["shape"]["file"]
+        for item in client.get("/api/examples/brushed").json()["objects"]
+        if "file" in item["shape"]
+    ]
+    assert files
+    assert all(file.startswith("upload:") for file in files)
+    scene = client.get("/api/examples/brushed").json()
+    scene["camera"]["resolution"] = [16, 12]
+    assert client.post("/api/render?samples=4", json=scene).status_code == 200
