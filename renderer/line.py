@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.pieces import locate, scale_at, tangent_at
+from renderer.geometry.pieces import is_beyond, locate, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find, nearby, over_crossing
 from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, shifts, spans
 from renderer.geometry.view import View, on_plane, view_of
@@ -159,19 +159,22 @@ def find_around(strict: bool, pattern: Pattern, view: View, eye_p: float, eye_q:
 
 
 @leaf
-def crosses_groove(pattern: Pattern, found: Nearby, count: int, view: View) -> bool:
-    """Whether any of the cross-sections found may lie under the footprint itself."""
+def near_groove(pattern: Pattern, count: int, view: View, eye_p: float, eye_q: float, work: Work) -> bool:
+    """Whether any of the cross-sections found may lie under the footprint, hide a part of it or shade it."""
+    found = work.found
     radius = 0.0
+    for l in range(len(work.towards)):
+        radius = max(radius, pattern.height * math.hypot(work.towards[l, 0], work.towards[l, 1]))
+    radius = max(radius, pattern.height * math.hypot(eye_p, eye_q))
+    above = radius
     for k in range(4):
         p, q = on_plane(view, float(k & 1), float(k >> 1))
-        radius = max(radius, math.hypot(p - view.p, q - view.q))
+        radius = max(radius, above + math.hypot(p - view.p, q - view.q))
     for k in range(count):
         piece = pattern.pieces[found.piece[k]]
-        s, b = locate(piece, view.p - found.shift[k, 0], view.q - found.shift[k, 1])
-        if abs(b) > radius + piece.half and (piece.curvature == 0.0 or piece.closed == 1):
-            continue
-        far = radius + pattern.reach
-        if piece.curvature != 0.0 or (s > -far and s < piece.length + far):
+        x, y = view.p - found.shift[k, 0], view.q - found.shift[k, 1]
+        s, b = locate(piece, x, y)
+        if not is_beyond(piece, x, y, s, b, radius):
             return True
     return False
 
@@ -248,7 +251,10 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
         piece = pattern.pieces[found.piece[k]]
         groove = pattern.grooves[piece.groove]
         profile = pattern.profiles[groove.profile]
-        s, b = locate(piece, view.p - found.shift[k, 0], view.q - found.shift[k, 1])
+        x, y = view.p - found.shift[k, 0], view.q - found.shift[k, 1]
+        s, b = locate(piece, x, y)
+        if is_beyond(piece, x, y, s, b, spread):
+            continue
         ux, uy = tangent_at(piece, s if piece.closed == 1 else min(max(s, 0.0), piece.length))
         sine, cosine = r.tx * uy - r.ty * ux, r.tx * ux + r.ty * uy
         # what matters, a rectangle along T and B, in the piece's own coordinates
@@ -416,7 +422,7 @@ def line(
         count = find_around(strict, pattern, view, eye_p, eye_q, work)
         if strict and count < 0:
             continue
-        if not ridged and not crosses_groove(pattern, work.found, count, view):
+        if not near_groove(pattern, count, view, eye_p, eye_q, work):
             count = 0
         tx, ty = direction(pattern, work.found, count, view)
         r = reach_along(pattern, view, eye_p, eye_q, tx, ty, work)

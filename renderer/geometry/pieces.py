@@ -56,6 +56,19 @@ def point_at(piece: np.void, s: float) -> tuple[float, float]:
 
 
 @leaf
+def is_beyond(piece: np.void, x: float, y: float, s: float, b: float, radius: float) -> bool:
+    """Whether all of the piece's cross-sections lie farther than `radius` from the point (x, y), which is at (s, b)."""
+    if (piece.curvature == 0.0 or piece.closed == 1 or 0.0 <= s <= piece.length) and abs(b) > radius + piece.half:
+        return True
+    if piece.closed == 1 or 0.0 <= s <= piece.length:
+        return False
+    mitre = max(abs(piece.start_mitre), abs(piece.finish_mitre))
+    far = radius + piece.half * math.sqrt(max(1.0 + mitre * mitre, 2.0))
+    ex, ey = point_at(piece, piece.length)
+    return min(math.hypot(x - piece.x, y - piece.y), math.hypot(x - ex, y - ey)) > far
+
+
+@leaf
 def scale_at(scale_table: NDArray[np.float64], groove: np.void, piece: np.void, s: float) -> tuple[float, float]:
     """The scale of the cross-section at arc length s, placement included, and its derivative by s (1/pattern unit).
 
