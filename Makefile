@@ -1,6 +1,7 @@
 # Everything from a fresh checkout with Python 3.11+, a shell and make:
 #   make serve   the editor and the service on http://127.0.0.1:8000/, with an example open
 #   make test    every check and every test, the browser's too
+#   make bench   what the README's numbers come from; about ten minutes
 #   make lock    the lock files anew, from pyproject.toml
 
 PYTHON ?= python3
@@ -23,7 +24,7 @@ PAGE := web/dist/index.html
 CHECK_PAGE := check-page
 endif
 
-.PHONY: serve test check check-page lock clean
+.PHONY: serve test check check-page bench lock clean
 .DELETE_ON_ERROR:
 
 serve: $(STAMPS)/install $(PAGE)
@@ -34,6 +35,9 @@ serve: $(STAMPS)/install $(PAGE)
 test: check $(CHECK_PAGE) $(PAGE) $(STAMPS)/chromium
 	$(BIN)/python -c 'from renderer import pipeline; pipeline.warm_up()'
 	$(BIN)/python -m pytest $(PYTEST)
+
+bench: $(STAMPS)/dev
+	$(BIN)/python -m bench
 
 check: $(STAMPS)/dev
 	$(BIN)/ruff check .
