@@ -442,7 +442,9 @@ def meet_piece(
                 high, s0 + hair, b0, f, low, s1 + hair, b1, f, 0.0, 0.0, 2.0 * hair, 1.0, -ratio, NO,
             )  # fmt: skip
             part = CAP_START if end == 0 else CAP_FINISH
-            n = meet_cap(points, profile, rank, e, n, PARTS * found + part, part, f, s0, -out * b0, s1, -out * b1, high, low)
+            n = meet_cap(
+                points, profile, rank, e, n, PARTS * found + part, part, f, s0, -out * b0, s1, -out * b1, high, low
+            )
     return n
 
 
@@ -466,7 +468,8 @@ def next_stop(scale_table: Floats, groove: np.void, piece: np.void, s: float, fo
         return math.inf if forwards else piece.length
     if groove.scale_kind == SCALE_SINE:
         step = piece.length / math.ceil(max(SINE_CHORDS * groove.scale_b * (piece.t1 - piece.t0), 1.0))
-        return min(max(step * ((math.floor(s / step) + 1.0) if forwards else math.ceil(s / step) - 1.0), 0.0), piece.length)
+        stop = step * (math.floor(s / step) + 1.0) if forwards else step * (math.ceil(s / step) - 1.0)
+        return min(max(stop, 0.0), piece.length)
     if groove.scale_kind == SCALE_TABLE:
         t = piece.t0 + (piece.t1 - piece.t0) * s / piece.length
         low, high = groove.table_start, groove.table_start + groove.table_count - 1
@@ -672,7 +675,6 @@ def normal_of(
     elif m.part == TAIL_START or m.part == TAIL_FINISH:
         s = 0.0 if m.part == TAIL_START else piece.length
         tx, ty = tangent_at(piece, s)
-        f, slope = scale_at(pattern.scale_table, groove, piece, s)
         slope = 0.0
     else:
         s = 0.0 if m.part == CAP_START else piece.length

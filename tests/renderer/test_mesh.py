@@ -116,12 +116,15 @@ class Maker:
     def pattern(self) -> Pattern:
         none = np.zeros(0, np.int32)
         grid = Grid(np.zeros(2), np.ones(2), none, np.array(self.tile), none, none, np.zeros((0, 2)), none)
+        pieces = np.concatenate([np.zeros(0, PIECE), *self.pieces])
         points = np.array(self.points).reshape(-1, 2)
-        most = max((g[-1] for g in self.grooves), default=1.0) * max((float(p["size"][0]) for p in self.pieces), default=1.0)
+        most = max((g[-1] for g in self.grooves), default=1.0) * max(
+            (float(p["size"][0]) for p in self.pieces), default=1.0
+        )
         height, depth = max(points[:, 1].max(initial=0.0), 0.0) * most, max(-points[:, 1].min(initial=0.0), 0.0) * most
         width = np.abs(points[:, 0]).max(initial=0.0) * most
         return Pattern(
-            grid, np.concatenate([np.zeros(0, PIECE), *self.pieces]), np.array(self.grooves, GROOVE), np.array(self.profiles, PROFILE_ROW),
+            grid, pieces, np.array(self.grooves, GROOVE), np.array(self.profiles, PROFILE_ROW),
             points, np.array(self.slots, np.int32), np.array(self.table, np.float64).reshape(-1, 2),
             float(height), float(depth), float(width), 2.0 * float(width), False,
         )  # fmt: skip
