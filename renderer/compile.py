@@ -57,6 +57,7 @@ CURVE_TOLERANCE = 2e-5
 """How far arcs may leave a Bézier or a spiral, as a part of the path's extent."""
 WIDTH_TOLERANCE = 1 / 20
 """... and as a part of the groove's width, which decides only for grooves that are narrow for their path."""
+MOST_NEAR = 1 << 16  # pieces that one ray looks at in one place
 BYTES_KEPT = 256 << 20  # compiled patterns and paths in a cache
 
 Project = Callable[[Sequence[tuple[float, ...]]], Sequence[tuple[float, float]]]
@@ -287,8 +288,20 @@ def dress(pattern: schema.Pattern, traced: Paths) -> Compiled:
         width=float(np.max(half, initial=0.0)),
         reach=float(np.max(far, initial=0.0)),
         parallel=lines and bool(np.all(np.abs(sine) < 1e-12)),
+        near=_near(traced, float(np.max(far, initial=0.0))),
     )
     return Compiled(tables_out, tuple(names))
+
+
+def _near(traced: Paths, reach: float) -> int:
+    """The most pieces that are looked at near one stretch of a ray (solid.meet): all, once a repetition of the tile
+    whose paths get there. Without a tile more than MOST_NEAR are not."""
+    grid = traced.grid
+    if grid.tile[0] == 0.0:
+        return min(len(traced.pieces), MOST_NEAR)
+    stretch = 2.0 * float(grid.cell.max()) + 3.0 * reach
+    overlaps = np.floor((grid.cell * grid.shape + stretch) / grid.tile) + 2.0
+    return int(min(len(traced.pieces) * float(np.prod(overlaps)), 1e18))
 
 
 def _scale(g: np.void, scale: schema.Scale, tables: list[tuple[float, float]]) -> None:
@@ -393,6 +406,14 @@ def compile_scene(
                 scene.patterns[model.pattern], surface.project,
                 model.model_dump_json(include={"shape", "translate", "rotate", "mapping"}),
             )  # fmt: skip
+            if kept.tables.near > MOST_NEAR:
+                raise RenderError(
+                    Fault(
+                        f"/patterns/{model.pattern.replace('~', '~0').replace('/', '~1')}/tile",
+                        f"a tile in which at most {MOST_NEAR} grooves of all its repetitions come near a point",
+                        str(kept.tables.near),
+                    )
+                )
             if id(kept) not in compiled:
                 compiled[id(kept)] = kept.tables
                 tables.append(kept.tables)

@@ -20,7 +20,6 @@ from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world,
 from renderer.tables import CSG, Camera, Lighting, Pattern
 
 SHARED = fixed(32)  # up to so many pieces are found once for all samples of a footprint
-CAPACITY = fixed(8192)  # pieces near one stretch of a ray
 LEVEL = 1e-6  # a light's slope to the plane is taken for at least this
 PROBE = 4  # `auto` begins with PROBE * PROBE samples
 
@@ -36,7 +35,7 @@ def csg(
     samples: at least so many a footprint, in a grid of strata. slots: rows of `materials` for the pattern's facets,
     the object's own first.
     """
-    owned = nearby(pattern, CAPACITY), events(pattern)
+    owned = nearby(pattern, max(pattern.near, SHARED)), events(pattern)
     found, spans = borrow(owned[0]), borrow(owned[1])
     pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)

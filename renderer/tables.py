@@ -114,6 +114,7 @@ class Pattern(NamedTuple):
     width: float  # the largest |b| of any cross-section, scale included
     reach: float  # the farthest that a cross-section gets from its centre line, ends and mitres included
     parallel: bool  # all pieces are lines of one direction
+    near: int  # no more pieces than this are looked at near one stretch of a ray
 
 
 BARE = Pattern(
@@ -122,7 +123,7 @@ BARE = Pattern(
         np.zeros((0, 2)), np.zeros(0, np.int32),
     ),
     np.zeros(0, PIECE), np.zeros(0, GROOVE), np.zeros(0, PROFILE_ROW), np.zeros((0, 2)), np.zeros(0, np.int32),
-    np.zeros((0, 2)), 0.0, 0.0, 0.0, 0.0, True,
+    np.zeros((0, 2)), 0.0, 0.0, 0.0, 0.0, True, 0,
 )  # fmt: skip
 """The pattern of a surface without grooves."""
 

@@ -569,7 +569,7 @@ def meet(
                 max(pa, pc) + margin, max(qa, qc) + margin, len(found.piece),
             )  # fmt: skip
             if pieces < 0:
-                pieces = len(found.piece)
+                pieces = len(found.piece)  # the first Pattern.near, without a tile; with one there are no more
         n = NONE
         for i in range(pieces):
             item = found.piece[i]

@@ -126,7 +126,7 @@ class Maker:
         return Pattern(
             grid, pieces, np.array(self.grooves, GROOVE), np.array(self.profiles, PROFILE_ROW),
             points, np.array(self.slots, np.int32), np.array(self.table, np.float64).reshape(-1, 2),
-            float(height), float(depth), float(width), 2.0 * float(width), False,
+            float(height), float(depth), float(width), 2.0 * float(width), False, len(self.pieces),
         )  # fmt: skip
 
 
