@@ -57,7 +57,7 @@ CURVE_TOLERANCE = 2e-5
 """How far arcs may leave a Bézier or a spiral, as a part of the path's extent."""
 WIDTH_TOLERANCE = 1 / 20
 """... and as a part of the groove's width, which decides only for grooves that are narrow for their path."""
-MOST_NEAR = 1 << 16  # pieces that one ray looks at in one place
+MOST_NEAR = 1 << 18  # pieces that one ray looks at in one place
 BYTES_KEPT = 256 << 20  # compiled patterns and paths in a cache
 
 Project = Callable[[Sequence[tuple[float, ...]]], Sequence[tuple[float, float]]]
