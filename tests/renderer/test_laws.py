@@ -205,11 +205,13 @@ def test_odd_scenes_are_pictures(
         scene["objects"][0] |= {
             "shape": {"type": "cylinder", "radius": 1, "height": 1}, "translate": [0, 0, -1], "rotate": [90, 0, 0],
         }  # fmt: skip
+    pointers = []
     try:
         values = radiance(scene, method=method, samples=4)
     except RenderError as error:
-        assert [fault.pointer for fault in error.faults] == ["/patterns/cut/tile"]
-        return
+        pointers = [fault.pointer for fault in error.faults]
+        values = np.zeros(1)
+    assert pointers in ([], ["/patterns/cut/tile"])
     assert np.isfinite(values).all()
     assert (values >= 0.0).all()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from renderer.geometry.share import share
@@ -29,6 +29,7 @@ def clipped(a: float, b: float, c: float) -> float:
     )
 
 
+@settings(deadline=None)  # the kernel is compiled in the first example
 @given(a=NUMBER, b=NUMBER, c=NUMBER)
 def test_against_clipping(a: float, b: float, c: float) -> None:
     """Where the line is well defined: its value must be known at the corners to more than rounding."""
@@ -36,6 +37,7 @@ def test_against_clipping(a: float, b: float, c: float) -> None:
         assert share(a, b, c) == pytest.approx(clipped(a, b, c), abs=1e-9)
 
 
+@settings(deadline=None)
 @given(angle=st.floats(0, 7), offset=st.floats(-1, 1), factor=st.floats(1e-12, 1e12))
 def test_both_sides_make_the_square_and_length_does_not_matter(angle: float, offset: float, factor: float) -> None:
     a, b = math.cos(angle), math.sin(angle)
