@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of
-from renderer.geometry.solid import NO, OPEN, YES, events, lift, meet, normal_of, polish
+from renderer.geometry.solid import OPEN, lift, meet, normal_of, polish
+from renderer.geometry.spans import NO, YES, events
 from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit

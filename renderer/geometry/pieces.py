@@ -92,8 +92,8 @@ def scale_at(scale_table: NDArray[np.float64], groove: np.void, piece: np.void, 
 
 
 @leaf
-def interpolate(table: NDArray[np.float64], start: int, count: int, t: float) -> tuple[float, float]:
-    """Value and slope at t of the polyline through `count` rows (t, value) from row `start`."""
+def row_before(table: NDArray[np.float64], start: int, count: int, t: float) -> int:
+    """Of `count` rows (t, value) from row `start` on, the last but one at most, whose t is not above the given."""
     low, high = start, start + count - 1
     while high - low > 1:
         middle = (low + high) // 2
@@ -101,5 +101,12 @@ def interpolate(table: NDArray[np.float64], start: int, count: int, t: float) ->
             low = middle
         else:
             high = middle
-    slope = (table[high, 1] - table[low, 1]) / (table[high, 0] - table[low, 0])
-    return table[low, 1] + slope * (t - table[low, 0]), slope
+    return low
+
+
+@leaf
+def interpolate(table: NDArray[np.float64], start: int, count: int, t: float) -> tuple[float, float]:
+    """Value and slope at t of the polyline through `count` rows (t, value) from row `start`."""
+    row = row_before(table, start, count, t)
+    slope = (table[row + 1, 1] - table[row, 1]) / (table[row + 1, 0] - table[row, 0])
+    return table[row, 1] + slope * (t - table[row, 0]), slope

@@ -1,4 +1,4 @@
-"""A scene's patterns become tables: the one door where pydantic's models end.
+"""A scene's patterns become tables.
 
 Two steps, each kept by content. *Paths*: every path becomes lines and arcs, every repeat is written out, the grid is
 built; profiles, scales, materials and priorities have no part in it. *Patterns*: the pieces get their grooves.
@@ -18,38 +18,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 import schema
-from renderer import grid, meshfile, paths, repeats
-from renderer.errors import Fault, RenderError
+from renderer import grid, paths, repeats
 from renderer.geometry.pieces import LEAST_SCALE
-from renderer.geometry.shapes import NO_TRIANGLES, Triangles
-from renderer.meshfile import TriangleSoup
-from renderer.surface import Surface
 from renderer.tables import (
     CORNER,
-    CYLINDER,
-    DIRECTIONAL,
     FLAT,
     GROOVE,
-    LIGHT,
-    MATERIAL,
-    MAX_LIGHTS,
-    MESH,
-    OBJECT,
     PIECE,
-    POINT,
     PROFILE,
     PROFILE_ROW,
-    RECTANGLE,
     SCALE_CONSTANT,
     SCALE_LINEAR,
     SCALE_SINE,
     SCALE_TABLE,
     SMOOTH,
-    SPHERE,
-    Camera,
     Chain,
     Grid,
-    Lighting,
     Pattern,
 )
 
@@ -357,167 +341,3 @@ def internal(points: Sequence[tuple[float, float]]) -> tuple[int, int]:
     while last > 0 and points[last - 1][1] >= points[last][1]:
         last -= 1
     return (first, last) if first < last else (0, 0)
-
-
-class CompiledScene(NamedTuple):
-    """All that a render reads."""
-
-    camera: Camera
-    resolution: tuple[int, int]
-    objects: NDArray[np.void]  # (n,) OBJECT
-    triangles: Triangles
-    materials: NDArray[np.void]  # (m,) MATERIAL
-    lighting: Lighting
-    patterns: tuple[Pattern, ...]
-    slots: tuple[NDArray[np.int32], ...]  # an object each: rows of MATERIAL for its own and its pattern's slots
-
-
-def compile_scene(
-    scene: schema.Scene, resolution: tuple[int, int], patterns: PatternCache, meshes: Callable[[str], bytes] | None
-) -> CompiledScene:
-    """The tables of a scene. `meshes` gives a mesh file's bytes by its name.
-
-    Raises RenderError where a mesh file cannot be had, or used.
-    """
-    names = {name: row for row, name in enumerate(scene.materials)}
-    objects = np.zeros(len(scene.objects), OBJECT)
-    compiled: dict[int, Pattern] = {}
-    tables: list[Pattern] = []
-    slots = []
-    soups: list[tuple[int, TriangleSoup]] = []
-    read: dict[str, TriangleSoup] = {}
-    for row, model in enumerate(scene.objects):
-        obj = objects[row]
-        place(obj, model)
-        obj["material"] = names[model.material]
-        obj["pattern"] = -1
-        slot = [obj["material"]]
-        shape = model.shape
-        if isinstance(shape, schema.Mesh):
-            if shape.file not in read:
-                read[shape.file] = _read_mesh(f"/objects/{row}/shape/file", shape.file, meshes)
-            soup = read[shape.file]
-            if soup.uv is None and model.pattern is not None:
-                raise RenderError(Fault(f"/objects/{row}/shape/file", "a mesh with uv, as it has a pattern", "no uv"))
-            soups.append((row, soup))
-        if model.pattern is not None:
-            surface = Surface(obj, read.get(shape.file) if isinstance(shape, schema.Mesh) else None)
-            kept = patterns.pattern(
-                scene.patterns[model.pattern], surface.project,
-                model.model_dump_json(include={"shape", "translate", "rotate", "mapping"}),
-            )  # fmt: skip
-            if kept.tables.near > MOST_NEAR:
-                raise RenderError(
-                    Fault(
-                        f"/patterns/{model.pattern.replace('~', '~0').replace('/', '~1')}/tile",
-                        f"a tile in which at most {MOST_NEAR} grooves of all its repetitions come near a point",
-                        str(kept.tables.near),
-                    )
-                )
-            if id(kept) not in compiled:
-                compiled[id(kept)] = kept.tables
-                tables.append(kept.tables)
-            obj["pattern"] = next(i for i, table in enumerate(tables) if table is kept.tables)
-            slot += [names[name] for name in kept.materials]
-        slots.append(np.array(slot, np.int32))
-    return CompiledScene(
-        camera=_camera(scene.camera, resolution),
-        resolution=resolution,
-        objects=objects,
-        triangles=_triangles(objects, soups),
-        materials=np.concatenate([_material(material) for material in scene.materials.values()]),
-        lighting=_lighting(scene.lights),
-        patterns=tuple(tables),
-        slots=tuple(slots),
-    )
-
-
-def place(obj: np.void, model: schema.Object) -> None:
-    """Write where an object stands, its shape and its mapping into its row of OBJECT."""
-    shape = model.shape
-    if isinstance(shape, schema.Rectangle):
-        obj["shape"], obj["size"] = RECTANGLE, shape.size
-    elif isinstance(shape, schema.Sphere):
-        obj["shape"], obj["size"] = SPHERE, (shape.radius, 0.0)
-    elif isinstance(shape, schema.Cylinder):
-        obj["shape"], obj["size"] = CYLINDER, (shape.radius, shape.height)
-    else:
-        obj["shape"] = MESH
-    rotation = np.eye(3)
-    for axis, degrees in enumerate(model.rotate):  # about the fixed x, then y, then z axis
-        turn = np.eye(3)
-        i, j = (axis + 1) % 3, (axis + 2) % 3
-        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-        turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
-        rotation = turn @ rotation
-    obj["rotation"], obj["translation"] = rotation, model.translate
-    obj["mapping"] = (*model.mapping.scale, *model.mapping.offset)
-
-
-def _read_mesh(pointer: str, name: str, meshes: Callable[[str], bytes] | None) -> TriangleSoup:
-    if meshes is None:
-        raise RenderError(Fault(pointer, "no mesh file, as none can be read here", repr(name)))
-    try:
-        return meshfile.read(name, meshes(name))
-    except OSError as error:
-        raise RenderError(Fault(pointer, "a file that can be read", f"{name!r}: {error.strerror or error}")) from None
-    except meshfile.MeshFileError as error:
-        raise RenderError(Fault(pointer, error.expected, error.found)) from None
-
-
-def _triangles(objects: NDArray[np.void], soups: list[tuple[int, TriangleSoup]]) -> Triangles:
-    """All mesh objects' triangles in the world."""
-    parts = []
-    for row, soup in soups:
-        turn = objects[row]["rotation"].T
-        uv = np.zeros((len(soup.corners), 3, 2)) if soup.uv is None else soup.uv
-        owner = np.full(len(uv), row, np.int32)
-        parts.append((soup.corners @ turn + objects[row]["translation"], uv, soup.normals @ turn, owner))
-    if not parts:
-        return NO_TRIANGLES
-    corners, uvs, normals, owners = zip(*parts, strict=True)
-    return Triangles(*(np.ascontiguousarray(np.concatenate(column)) for column in (corners, uvs, normals, owners)))
-
-
-def _camera(camera: schema.Camera, resolution: tuple[int, int]) -> Camera:
-    width, height = resolution
-    origin = np.array(camera.origin, float)
-    forward = np.array(camera.target, float) - origin
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, np.array(camera.up, float))
-    right /= np.linalg.norm(right)
-    up = np.cross(right, forward)
-    step = 2.0 * math.tan(math.radians(camera.fov) / 2.0) / height  # a pixel's width at distance 1
-    corner = forward - right * (0.5 * width * step) + up * (0.5 * height * step)
-    return Camera(origin, corner, right * step, -up * step)
-
-
-def _material(material: schema.Material) -> NDArray[np.void]:
-    """The row of MATERIAL (1,), as glTF 2.0 with KHR_materials_specular and _ior has it."""
-    row = np.zeros(1, MATERIAL)
-    row["base_color"], row["emissive"] = material.base_color, material.emissive
-    row["metallic"], row["transmission"] = material.metallic, material.transmission
-    row["alpha"] = material.roughness**2
-    row["f0"] = material.specular * ((material.ior - 1.0) / (material.ior + 1.0)) ** 2
-    row["f90"] = material.specular
-    return row
-
-
-def _lighting(lights: Sequence[schema.Light]) -> Lighting:
-    """The lights that are rendered; a picture of the surroundings is not yet."""
-    rows = []
-    sky = np.zeros(3)
-    for light in lights:
-        row = np.zeros(1, LIGHT)
-        if isinstance(light, schema.DirectionalLight):
-            away = -np.array(light.direction, float)
-            row["kind"], row["vector"], row["color"] = DIRECTIONAL, away / np.linalg.norm(away), light.irradiance
-            rows.append(row)
-        elif isinstance(light, schema.PointLight):
-            row["kind"], row["vector"], row["color"] = POINT, light.position, light.intensity
-            rows.append(row)
-        elif isinstance(light, schema.ConstantLight):
-            sky += light.radiance
-    if len(rows) > MAX_LIGHTS:
-        raise RenderError(Fault("/lights", f"at most {MAX_LIGHTS} directional and point lights", str(len(rows))))
-    return Lighting(np.concatenate(rows) if rows else np.zeros(0, LIGHT), sky)
