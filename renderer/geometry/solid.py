@@ -29,6 +29,7 @@ from renderer.geometry.spans import (
     TAIL_START,
     Events,
     meet_piece,
+    sort,
 )
 from renderer.kernel import leaf
 from renderer.tables import SCALE_CONSTANT, Pattern
@@ -64,11 +65,12 @@ def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[floa
     for rank in range(len(e.open)):
         e.open[rank, 0] = e.open[rank, 1] = e.open[rank, 2] = 0
     below = high <= 0.0
+    sort(e, n)
     k = 0
     if below and n == 0:
         return high, PLANE, -1
     while k < n or not below:
-        at = e.w[k] if k < n else -math.inf
+        at = e.w[e.order[k]] if k < n else -math.inf
         facet, owner = PLANE, -1
         if not below and at <= 0.0:
             at = 0.0
@@ -77,13 +79,13 @@ def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[floa
         if not below and at <= thin:
             below = True
         until = at - thin
-        while k < n and e.w[k] >= until:
-            sign, kind, rank = e.change[k, 0], e.change[k, 1], e.change[k, 2]
+        while k < n and e.w[e.order[k]] >= until:
+            sign, kind, rank = e.change[e.order[k], 0], e.change[e.order[k], 1], e.change[e.order[k], 2]
             e.open[rank, kind] += sign
-            if not (kind == REMOVE and sign > 0) and (facet < 0 or e.change[k, 3] >= 0):
-                facet, owner = e.change[k, 3], e.change[k, 4]
+            if not (kind == REMOVE and sign > 0) and (facet < 0 or e.change[e.order[k], 3] >= 0):
+                facet, owner = e.change[e.order[k], 3], e.change[e.order[k], 4]
             k += 1
-        if is_solid(e, below) and (k >= n or e.w[k] < until):
+        if is_solid(e, below) and (k >= n or e.w[e.order[k]] < until):
             return at, facet, owner
     return -math.inf, PLANE, -1
 

@@ -58,6 +58,7 @@ class Events(NamedTuple):
 
     w: NDArray[np.float64]  # (EVENTS,)
     change: NDArray[np.int32]  # (EVENTS, 5): +1 or -1, BAND, ADD or REMOVE, rank, facet, PARTS * place found + part
+    order: NDArray[np.int32]  # (EVENTS,) from high to low
     open: NDArray[np.int32]  # (ranks, 3) spans open at the ray's present height
 
 
@@ -66,22 +67,41 @@ def events(pattern: Pattern) -> Events:
     ranks = 1
     for groove in pattern.grooves:
         ranks = max(ranks, groove.priority + 1)
-    return Events(np.empty(EVENTS), np.empty((EVENTS, 5), np.int32), np.zeros((ranks, 3), np.int32))
+    return Events(
+        np.empty(EVENTS), np.empty((EVENTS, 5), np.int32), np.empty(EVENTS, np.int32), np.zeros((ranks, 3), np.int32)
+    )
 
 
 @leaf
 def put(e: Events, n: int, w: float, sign: int, kind: int, rank: int, facet: int, owner: int) -> int:
+    """Note the end of a span: the number of events now. Beyond EVENTS they are dropped."""
     if n >= EVENTS:
         return n
-    at = n
-    while at > 0 and e.w[at - 1] < w:  # kept sorted, from high to low
-        e.w[at] = e.w[at - 1]
-        for c in range(5):
-            e.change[at, c] = e.change[at - 1, c]
-        at -= 1
-    e.w[at] = w
-    e.change[at, 0], e.change[at, 1], e.change[at, 2], e.change[at, 3], e.change[at, 4] = sign, kind, rank, facet, owner
+    e.w[n] = w
+    e.change[n, 0], e.change[n, 1], e.change[n, 2], e.change[n, 3], e.change[n, 4] = sign, kind, rank, facet, owner
     return n + 1
+
+
+@leaf
+def sort(e: Events, n: int) -> None:
+    """Fill `e.order` with the n events from high to low, equal ones as they were noted (Shell 1959; Ciura's gaps).
+
+    Most rays have a few events, for which it is an insertion sort.
+    """
+    for i in range(n):
+        e.order[i] = i
+    for gap in (701, 301, 132, 57, 23, 10, 4, 1):
+        for i in range(gap, n):
+            item = e.order[i]
+            w = e.w[item]
+            at = i
+            while at >= gap:
+                other = e.order[at - gap]
+                if e.w[other] > w or (e.w[other] == w and other < item):
+                    break
+                e.order[at] = other
+                at -= gap
+            e.order[at] = item
 
 
 @leaf
