@@ -151,7 +151,8 @@ def render(
     settings = Settings(method or scene.render.method, samples or scene.render.samples, scene.render.seed)
     if settings.method not in METHODS:
         raise RenderError(Fault("/render/method", f"one of {', '.join(METHODS)}", repr(settings.method)))
-    seconds = {"kernels": warm_up()}
+    has_mesh = any(isinstance(item.shape, schema.Mesh) for item in scene.objects)
+    seconds = {"kernels": warm_up(geometry=settings.method == "geometry", meshes=has_mesh)}
     start = time.perf_counter()
     compiled = compile_scene(
         scene, resolution or scene.camera.resolution, patterns if patterns is not None else PatternCache(), meshes
@@ -260,15 +261,34 @@ def kernels_compiled() -> bool:
     return _READY.exists()
 
 
-_warm = False
+_warm: set[str] = set()
 
 
-def warm_up() -> float:
-    """Compile the kernels, or load them from their cache: the seconds that took, next to none from the second call."""
-    global _warm
-    if _warm:
-        return 0.0
+def warm_up(*, geometry: bool = False, meshes: bool = False) -> float:
+    """Compile the kernels, or load them from their cache: the seconds that took, next to none from the second call.
+
+    The kernels of method `geometry`, and those of mesh files, are left until they are asked for.
+    """
     begin = time.perf_counter()
+    if "analytic" not in _warm:
+        _try("line", {"type": "sphere", "radius": 1})
+        _try("csg", {"type": "sphere", "radius": 1})
+        _READY.touch()
+        _warm.add("analytic")
+    if geometry and "geometry" not in _warm:
+        _try("geometry", {"type": "rectangle", "size": [2, 2]})
+        _warm.add("geometry")
+    if meshes and "meshes" not in _warm:
+        _try("line", {"type": "mesh", "file": "triangle.obj"})
+        _warm.add("meshes")
+    return time.perf_counter() - begin
+
+
+_TRIANGLE = b"""v -2 -2 0\nv 2 -2 0\nv 0 2 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n"""
+
+
+def _try(method: str, shape: dict[str, object]) -> None:
+    """Render a picture that nobody sees, with lights of both kinds and grooves."""
     scene = schema.check(
         {
             "intaglio": 1,
@@ -278,13 +298,9 @@ def warm_up() -> float:
             "materials": {"m": {}},
             "patterns": {"p": {"grooves": [{"path": {"type": "circle", "center": [0.5, 0.5], "radius": 0.2},
                                             "profile": {"type": "v", "width": 0.1, "depth": 0.1}}]}},
-            "objects": [{"shape": {"type": "sphere", "radius": 1}, "material": "m", "pattern": "p"}],
+            "objects": [{"shape": shape, "material": "m", "pattern": "p"}],
         }
     ).scene  # fmt: skip
     assert scene is not None
-    compiled = compile_scene(scene, (2, 2), PatternCache(), None)
-    for method in ("line", "csg"):
-        _frame(compiled, Settings(method, 1, 0)).tile(Tile(0, 0, 2, 2))
-    _READY.touch()
-    _warm = True
-    return time.perf_counter() - begin
+    compiled = compile_scene(scene, (2, 2), PatternCache(), lambda _: _TRIANGLE)
+    _frame(compiled, Settings(method, 1, 0)).tile(Tile(0, 0, 2, 2))
