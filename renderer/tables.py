@@ -57,7 +57,7 @@ PIECE = np.dtype(
     ]
 )  # fmt: skip
 """A line or arc of a placed path. (s, b) are its local coordinates: s arc length from the start point, b the signed
-distance to the left of the path."""
+distance to the left of the path. At a mitre they are those of the straight tangent at that end, on arcs too."""
 
 # Kinds of the scale f(t).
 SCALE_CONSTANT, SCALE_LINEAR, SCALE_SINE, SCALE_TABLE = 0, 1, 2, 3
