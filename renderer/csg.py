@@ -40,7 +40,7 @@ def csg(
     found, spans = borrow(owned[0]), borrow(owned[1])
     pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
-    lights = lighting.lights
+    lights, eye = lighting.lights, camera.origin
     high, low = pattern.height, -pattern.depth
     thin = 1e-6 * (high - low) + 1e-300
     for index in chosen:
@@ -104,9 +104,8 @@ def csg(
                     item = -1
                 material = materials[slots[slot]]
                 n_world = normal_to_world(frame, n)
-                eye_world = to_world(frame, frame.eye[0], frame.eye[1], dw)
                 at_world = to_world(frame, x, y, at)
-                e = unit((eye_world[0] - at_world[0], eye_world[1] - at_world[1], eye_world[2] - at_world[2]))
+                e = unit((eye[0] - at_world[0], eye[1] - at_world[1], eye[2] - at_world[2]))
                 colour = ambient(material, lighting.sky, albedo, n_world, e)
                 red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 lit = np.uint64(0)

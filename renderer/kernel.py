@@ -28,11 +28,6 @@ def leaf(function: F) -> F:
     return numba.njit(cache=False, nogil=True, error_model="numpy", forceinline=True)(function)  # type: ignore[no-any-return]
 
 
-def part(function: F) -> F:
-    """A large function that only kernels call, compiled once and called."""
-    return numba.njit(cache=False, nogil=True, error_model="numpy")(function)  # type: ignore[no-any-return]
-
-
 def fixed(value: N) -> N:
     """A constant to hand to a function in a kernel. For a plain one numba would compile that function once more."""
     return cast(N, np.asarray(value)[()])

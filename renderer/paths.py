@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.biarc import LARGEST_ARC, MOST_SEGMENTS, Curve, arc_over, at, ends, fit, turned
+from renderer.biarc import LARGEST_ARC, MOST_SEGMENTS, Curve, arc_over, ends, fit, turned
 from renderer.tables import SEGMENT, Chain, Floats
 
 if TYPE_CHECKING:
@@ -158,23 +158,6 @@ def svg(d: str, flip_y: bool, tolerance: float) -> list[Chain]:
             raise ValueError(f"expected a path of at most {MOST_SEGMENTS} segments, found one of more at {tolerance:g}")
         chains += _chains(segments, closed)
     return chains
-
-
-def length(chain: Chain) -> float:
-    """The arc length of a chain, pattern units."""
-    return math.fsum(chain.segments["length"])
-
-
-def points_on(chain: Chain, spacing: float) -> Floats:
-    """Points (n, 2) along a chain, at most `spacing` apart, the ends of all segments among them."""
-    points = [np.array([[chain.segments["x"][0], chain.segments["y"][0]]])]
-    for segment in chain.segments:
-        count = max(1, math.ceil(segment["length"] / spacing))
-        points.append(at(np.full(count, segment), segment["length"] * np.arange(1, count + 1) / count)[0])
-    return np.concatenate(points)
-
-
-# -- chains -----------------------------------------------------------------------------------------------------
 
 
 def _chains(segments: NDArray[np.void], closed: bool) -> list[Chain]:

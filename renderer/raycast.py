@@ -1,4 +1,4 @@
-"""Rays against the bare shapes of a scene. The only file that knows Embree, which holds the meshes.
+"""Rays against the bare shapes of a scene. Embree holds the meshes; only `trace` knows it besides.
 
 Embree finds the triangle, in single precision; where on it the ray passes is found again in double precision, so that
 a footprint on a mesh is as exact as on a plane.
@@ -11,10 +11,12 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
-from renderer.geometry.shapes import NO_TRIANGLES, START, Triangles, block, cast, cast_triangles, frames_at
+from renderer.geometry.shapes import NO_TRIANGLES, Triangles, block, cast, cast_triangles, frames_at
 from renderer.tables import FRAME, HIT, POINT, Floats
 
 Bools = NDArray[np.bool_]
+
+START = 1e-5  # shadow rays leave a mesh by this part of half the meshes' extent: single precision meets it again
 
 
 class Caster:
@@ -79,7 +81,7 @@ class Caster:
             block(self.objects, points, np.ascontiguousarray(to_light), far, own, blocked)
             facing = seen & ~blocked & (np.sum(normals * to_light, axis=1) > 0.0)
             if self._embree is not None and facing.any():
-                start = points + normals * (START * 10 * self._size)
+                start = points + normals * (START * self._size)
                 blocked[facing] |= self._occluded(start[facing], to_light[facing], light["kind"] == POINT)
             mask |= np.where(blocked, np.uint64(1) << np.uint64(index), np.uint64(0))
         return mask

@@ -17,8 +17,6 @@ from renderer.tables import CYLINDER, MESH, RECTANGLE, SPHERE, Floats, Ints
 
 Vector = tuple[float, float, float]
 
-START = 1e-6  # shadow rays leave the surface by this part of the distance to the scene's origin
-
 
 class Triangles(NamedTuple):
     """All mesh objects' triangles, in the world."""

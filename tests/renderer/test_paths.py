@@ -12,12 +12,29 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from renderer.biarc import LARGEST_ARC, at, distance, ends
-from renderer.paths import MITRE_LIMIT, circle, length, points_on, polyline, spiral, svg
+from renderer.paths import MITRE_LIMIT, circle, polyline, spiral, svg
 from renderer.tables import Chain, Floats
 
 numbers = st.floats(-10, 10).map(lambda value: round(value, 3))
 points = st.tuples(numbers, numbers)
 tolerances = st.sampled_from([1e-1, 1e-2, 1e-3, 1e-5])
+
+
+def length(chain: Chain) -> float:
+    """The arc length of a chain, pattern units."""
+    return math.fsum(chain.segments["length"])
+
+
+def points_on(chain: Chain, spacing: float) -> Floats:
+    """Points (n, 2) along a chain, at most `spacing` apart, the ends of all segments among them."""
+    points = [np.array([[chain.segments["x"][0], chain.segments["y"][0]]])]
+    for segment in chain.segments:
+        count = max(1, math.ceil(segment["length"] / spacing))
+        points.append(at(np.full(count, segment), segment["length"] * np.arange(1, count + 1) / count)[0])
+    return np.concatenate(points)
+
+
+# -- chains -----------------------------------------------------------------------------------------------------
 
 
 def corners(chain: Chain) -> list[tuple[float, float]]:
