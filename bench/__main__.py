@@ -11,42 +11,19 @@ variance, so both are given, and what the reference itself is worth.
 
 from __future__ import annotations
 
-import datetime
-import importlib.metadata
 import json
-import os
-import platform
-import subprocess
 import sys
 from pathlib import Path
 
 from bench import error, memory, speed, startup
 from bench.report import Line, table
 from renderer import pipeline
+from service.chart.machine import machine
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "bench" / "results.json"  # of a whole run
 OUT = ROOT / "bench" / "out"
 PARTS = {"error": error.measure, "speed": speed.measure, "memory": memory.measure, "startup": startup.measure}
-LIBRARIES = ("numpy", "numba", "embreex", "manifold3d", "trimesh")
-
-
-def machine() -> dict[str, object]:
-    """What the numbers were measured on."""
-    model = next(
-        (line.split(":", 1)[1].strip() for line in _lines("/proc/cpuinfo") if line.startswith("model name")), ""
-    )
-    commit = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True)
-    return {
-        "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        "commit": commit.stdout.strip(),
-        "processor": model or platform.processor() or platform.machine(),
-        "cores": os.cpu_count(),
-        "load": os.getloadavg()[0],
-        "system": platform.platform(),
-        "python": platform.python_version(),
-        "libraries": {name: importlib.metadata.version(name) for name in LIBRARIES},
-    }
 
 
 def main(names: list[str]) -> int:
@@ -72,13 +49,6 @@ def main(names: list[str]) -> int:
         result = {"command": "python -m bench", "machine": about, "lines": [line._asdict() for line in lines]}
         RESULTS.write_text(json.dumps(result, indent=2) + "\n")
     return int(any(line.met is False for line in lines))
-
-
-def _lines(path: str) -> list[str]:
-    try:
-        return Path(path).read_text().splitlines()
-    except OSError:
-        return []
 
 
 if __name__ == "__main__":

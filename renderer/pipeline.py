@@ -42,9 +42,11 @@ class Picture:
 
     radiance: NDArray[np.float32]  # (H, W, 3) linear
     aovs: dict[str, NDArray[np.uint8]]  # method: (H, W) indices of tables.METHODS
-    seconds: dict[str, float]  # by stage, those of threads added up; kernels: loading them; total: by the clock
+    # By stage, those of threads added up; kernels: loading them; solids: meshing them; total: by the clock.
+    seconds: dict[str, float]
     pattern_bytes: int  # memory of the compiled patterns
     shares: dict[str, float]  # by method, of the pixels that see an object
+    solid_bytes: int = 0  # memory of the meshes that the method renders in place of the patterns
 
 
 class Settings(NamedTuple):
@@ -168,6 +170,7 @@ def render(
         seconds=seconds,
         pattern_bytes=sum(table_bytes(pattern) for pattern in compiled.patterns),
         shares=film.shares(frame.method),
+        solid_bytes=sum(solid.bytes for solid in frame.solids.values()),
     )
 
 
@@ -182,15 +185,18 @@ def _frame(compiled: CompiledScene, settings: Settings) -> Frame:
     width, height = compiled.resolution
     lit = bool(compiled.lighting.sky.any())
     flat = flat_frames(caster, compiled.camera.origin)
+    begin = time.perf_counter()
+    solids = _solids(compiled, flat) if settings.method == "geometry" else {}
     return Frame(
         scene=compiled,
         settings=settings,
         caster=caster,
         flat=flat,
-        solids=_solids(compiled, flat) if settings.method == "geometry" else {},
+        solids=solids,
         albedo=_albedo() if lit else np.zeros((2, 2, 2)),
         radiance=np.zeros((height, width, 3), np.float32),
         method=np.zeros((height, width), np.uint8),
+        seconds={"solids": time.perf_counter() - begin} if solids else {},
     )
 
 

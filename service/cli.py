@@ -12,7 +12,7 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn, TypeVar
 
 import typer
 
@@ -22,7 +22,9 @@ from service.interrupts import Interruptible, Stopped
 if TYPE_CHECKING:
     from renderer.pipeline import Picture
     from schema import Problem, Report, Scene
+    from service.chart.run import Plan
 
+T = TypeVar("T")
 WRONG, UNREADABLE, STOPPED = 1, 2, 130  # exit codes; 0: all is well
 SCENE_LIMIT = 64 << 20  # bytes of a scene file
 MESH_LIMIT = 1 << 30  # bytes of a mesh file
@@ -94,6 +96,64 @@ def render(
         _fail(WRONG, f"{out}: cannot be written: {error.strerror}")
     if as_json:
         _print_json(_statistics(picture, out, wanted, report))
+
+
+@app.command()
+def chart(
+    scene: SceneFile,
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Made where there is none.")],
+    resolution: Annotated[str | None, typer.Option(metavar="WxH", help="The camera's at a width of 320 else.")] = None,
+    methods: Annotated[str | None, typer.Option(metavar="M,M", help="All otherwise.")] = None,
+    budget: Annotated[float, typer.Option(metavar="SECONDS", min=1, max=1e6, help="Of rendering.")] = 240.0,
+    threads: Annotated[int | None, typer.Option(metavar="N", min=1, max=1024, help="All cores otherwise.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print chart.json.")] = False,
+) -> None:
+    """Measure speed against accuracy: every method against the converged reference.
+
+    Leaves chart.png, contact.png and chart.json. After Ctrl-C, the same command goes on from there.
+    """
+    names = None if methods is None else [name for name in methods.split(",") if name]
+    for name in names or []:
+        _known_method(name, "--methods")
+    size = _resolution(resolution)
+    problem = outputs.folder_fault(out)
+    if problem:
+        _fail(UNREADABLE, problem)
+    report, folder = _read(scene)
+    checked = _valid(report)
+    _meshes_exist(checked, folder)
+    title = "standard input" if scene == "-" else Path(scene).name
+
+    def planned() -> Plan:
+        from service.chart import make
+
+        read = lambda name: (folder / name).read_bytes()  # noqa: E731
+        return make.plan(checked, budget=budget, resolution=size, names=names, threads=threads, meshes=read)
+
+    def work(stopped: Callable[[], bool]) -> None:
+        from renderer import pipeline
+        from service.chart import make
+
+        if not pipeline.kernels_compiled():
+            _say(COMPILING)
+        plan = planned()
+        with _progress("measuring") as progress:
+            state = make.measure(plan, out, stopped, progress, _say)
+        make.write(plan, state, out, title)
+
+    def leave() -> None:
+        from service.chart import make
+
+        plan = planned()
+        state = make.left(plan, out)
+        if state is None:
+            return _say("stopped: nothing was measured")
+        make.write(plan, state, out, title)
+        return _say(f"stopped: {out} has what was measured; the same command goes on")
+
+    _finish(work, leave)
+    if as_json:
+        _print((out / "chart.json").read_text().rstrip())
 
 
 @app.command()
@@ -185,13 +245,13 @@ def _valid(report: Report) -> Scene:
     return report.scene
 
 
-def _known_method(method: str | None) -> None:
+def _known_method(method: str | None, option: str = "--method") -> None:
     if method is not None:
         from service.overrides import method_fault
 
         fault = method_fault(method)
         if fault:
-            _fail(UNREADABLE, f"--method: {fault}")
+            _fail(UNREADABLE, f"{option}: {fault}")
 
 
 def _meshes_exist(scene: Scene, folder: Path) -> None:
@@ -218,16 +278,18 @@ def _meshes_exist(scene: Scene, folder: Path) -> None:
         _fail(WRONG, *(problem.line() for problem in problems))
 
 
-def _finish(
-    work: Callable[[Callable[[], bool]], tuple[Picture, list[tuple[Path, bytes]]]],
-) -> tuple[Picture, list[tuple[Path, bytes]]]:
-    """What `work` gives; nothing has been written when it does not come to its end."""
+def _nothing() -> None:
+    _say("stopped: no picture was written")
+
+
+def _finish(work: Callable[[Callable[[], bool]], T], leave: Callable[[], None] = _nothing) -> T:
+    """What `work` gives. leave: called where it is stopped, before the process ends."""
     from renderer.errors import RenderError
 
     try:
         return Interruptible(work).run()
     except Stopped as stopped:
-        _say("stopped: no picture was written")
+        leave()
         sys.stdout.flush()
         sys.stderr.flush()
         # Not sys.exit: it would wait for threads that do not look up.
@@ -282,7 +344,7 @@ def _statistics(picture: Picture, out: Path, aovs: list[tuple[str, Path]], repor
 
 
 @contextlib.contextmanager
-def _progress() -> Iterator[Callable[[float], None] | None]:
+def _progress(what: str = "rendering") -> Iterator[Callable[[float], None] | None]:
     """A progress bar on the standard error, if that is a terminal."""
     if not sys.stderr.isatty():
         yield None
@@ -290,7 +352,7 @@ def _progress() -> Iterator[Callable[[float], None] | None]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-    columns = (TextColumn("rendering"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
+    columns = (TextColumn(what), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("render", total=1.0)
         yield lambda share: bar.update(task, completed=share)

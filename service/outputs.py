@@ -23,6 +23,17 @@ def fault(path: Path) -> str | None:
     return None
 
 
+def folder_fault(path: Path) -> str | None:
+    """Why no files can be written into the folder `path`, or why it cannot be made; None where they can."""
+    if path.is_dir():
+        return None if os.access(path, os.W_OK | os.X_OK) else f"{path}: expected a folder that can be written to"
+    if path.exists():
+        return f"{path}: expected a folder, found a file"
+    if not path.parent.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
+        return f"{path}: expected a folder, or a place for one, found no {path.parent} that can be written to"
+    return None
+
+
 def write(path: Path, data: bytes) -> None:
     """Write next to `path` and rename, so that nobody ever sees half of it."""
     handle, name = tempfile.mkstemp(prefix=".intaglio-", suffix=path.suffix, dir=path.parent)

@@ -64,6 +64,18 @@ def checked_for_service(text: bytes, wish: Wish, settings: Settings, meshes: Mes
     return scene
 
 
+def reader(meshes: MeshStore) -> Callable[[str], bytes]:
+    """What gives the bytes of an uploaded mesh by the name that a scene has for it."""
+
+    def mesh(name: str) -> bytes:
+        data = meshes.get(name.removeprefix(PREFIX))
+        if data is None:
+            raise FileNotFoundError(name)
+        return data
+
+    return mesh
+
+
 def paint(
     scene: schema.Scene,
     wish: Wish,
@@ -73,13 +85,6 @@ def paint(
     stopped: Callable[[], bool],
 ) -> tuple[bytes, pipeline.Picture]:
     """The picture as a file of the wished kind."""
-
-    def mesh(name: str) -> bytes:
-        data = meshes.get(name.removeprefix(PREFIX))
-        if data is None:
-            raise FileNotFoundError(name)
-        return data
-
     try:
         picture = pipeline.render(
             scene,
@@ -88,7 +93,7 @@ def paint(
             threads=settings.threads,
             resolution=wish.resolution,
             cancelled=stopped,
-            meshes=mesh,
+            meshes=reader(meshes),
             patterns=patterns,
         )
     except RenderError as error:

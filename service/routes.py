@@ -16,7 +16,8 @@ from fastapi.responses import JSONResponse
 
 import schema
 from renderer import compile as compiler
-from service import bodies, overrides, pictures
+from service import bodies, charts, overrides, pictures
+from service.charts import ChartWish
 from service.documents import CompiledPattern, Examples, Health, UploadedMesh, Validation
 from service.pictures import TYPES, Wish
 from service.problems import MEDIA_TYPE, ProblemError, findings
@@ -27,6 +28,7 @@ from service.store import PREFIX, SUFFIXES, MeshStore
 VERSION = "0.1.0"
 SCENE_BODY = {"requestBody": {"required": True, "content": {"application/json": {"schema": {"$ref": "#/scene"}}}}}
 PATTERN_BODY = {"requestBody": {"required": True, "content": {"application/json": {"schema": {"$ref": "#/pattern"}}}}}
+SUFFIX_OF = {kind: suffix for suffix, kind in TYPES.items()}
 _BINARY = {"schema": {"type": "string", "format": "binary"}}
 MESH_BODY = {
     "requestBody": {
@@ -144,7 +146,7 @@ async def render(
     """Waits for the picture of a scene. The render stops when the client goes."""
     here = shop(request)
     wish = Wish(
-        negotiate(request.headers.get("accept")),
+        SUFFIX_OF[negotiate(request.headers.get("accept"))],
         _method(method),
         samples,
         None if resolution is None else _resolution(resolution),
@@ -162,6 +164,48 @@ async def render(
         return Response(status_code=499)
     timing = ", ".join(f"{stage};dur={1000 * seconds:.1f}" for stage, seconds in picture.seconds.items())
     return Response(data, media_type=TYPES[wish.suffix], headers={"Server-Timing": timing, "Vary": "Accept"})
+
+
+@router.post(
+    "/chart",
+    openapi_extra=SCENE_BODY,
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The chart by Accept: the picture, or all numbers with the bounds of what is not resolved.",
+            "content": {"image/png": _BINARY, "application/json": {"schema": {"type": "object"}}},
+        },
+        **problems(406, 413, 422, 503),
+    },
+)
+async def chart(
+    request: Request,
+    methods: Annotated[str | None, Query(description="M,M in place of all", max_length=200)] = None,
+    resolution: Annotated[str | None, Query(description="WxH, small; 64 wide otherwise", max_length=16)] = None,
+    seconds: Annotated[
+        float | None, Query(description="of rendering; as many as the service gives otherwise", ge=1, le=600)
+    ] = None,
+) -> Response:
+    """Measures speed against accuracy in small. Stops when the client goes."""
+    here = shop(request)
+    wish = ChartWish(
+        negotiate(request.headers.get("accept"), tuple(charts.FILES)),
+        None if methods is None else [name for name in methods.split(",") if _method(name)],
+        None if resolution is None else _resolution(resolution),
+        seconds,
+    )
+    text = await bodies.read(request, here.settings.body_limit)
+    size = Wish(suffix=".png", method="base", samples=None, resolution=(1, 1))
+    scene = await anyio.to_thread.run_sync(
+        pictures.checked_for_service, text, size, here.settings, here.meshes, limiter=here.checks
+    )
+    width, height = charts.size(scene, wish, here.settings)
+    request.scope["state"]["pixels"] = width * height
+    try:
+        data = await here.renders.run(partial(charts.draw, scene, wish, here.settings, here.meshes), request)
+    except ClientGone:
+        return Response(status_code=499)
+    return Response(data, media_type=wish.media, headers={"Vary": "Accept"})
 
 
 @router.post("/patterns", openapi_extra=PATTERN_BODY, responses=problems(413, 422, 503))
@@ -196,15 +240,15 @@ async def upload_mesh(
     return UploadedMesh(id=Path(stored).stem, file=PREFIX + stored, bytes=len(data))
 
 
-def negotiate(accept: str | None) -> str:
-    """The suffix of the picture that an Accept header likes best; PNG where it does not say."""
+def negotiate(accept: str | None, kinds: tuple[str, ...] = tuple(TYPES.values())) -> str:
+    """The media type that an Accept header likes best; the first where it does not say."""
     best, best_quality = "", 0.0
-    for suffix, kind in TYPES.items():
+    for kind in kinds:
         quality = _quality(kind, accept or "*/*")
         if quality > best_quality:
-            best, best_quality = suffix, quality
+            best, best_quality = kind, quality
     if not best:
-        raise ProblemError(406, f"Expected one of {', '.join(TYPES.values())} in Accept.")
+        raise ProblemError(406, f"Expected one of {', '.join(kinds)} in Accept.")
     return best
 
 

@@ -29,6 +29,8 @@ class Settings:
     pixel_limit: int = 1 << 24  # of one picture
     sample_limit: int = 1 << 30  # pixels times samples of one picture
     time_limit: float = 300.0  # of one render, from its start
+    chart_pixels: int = 96 * 72  # of a chart's pictures
+    chart_seconds: float = 20.0  # of a chart's renders
     warm_up: bool = True  # load or compile the kernels at the start
 
     @classmethod

@@ -59,7 +59,7 @@ class FakeRenderer:
 def fake(monkeypatch: pytest.MonkeyPatch) -> FakeRenderer:
     renderer = FakeRenderer()
     monkeypatch.setattr(pipeline, "render", renderer)
-    monkeypatch.setattr(pipeline, "warm_up", lambda: 0.0)
+    monkeypatch.setattr(pipeline, "warm_up", lambda **_: 0.0)
     return renderer
 
 
