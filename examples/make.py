@@ -178,6 +178,7 @@ def hieroglyphs() -> Json:
     for index, order in enumerate(orders):
         middle = (index + 0.5) * step
         columns += glyphs(order, middle, 5.72, 0.66, 0.2)
+    for index in range(len(orders) + 1):  # the first one twice: half of it on either side of the seam
         path = {"type": "polyline", "points": [[index * step, 1.32], [index * step, 5.86]]}
         columns.append({"path": path, "profile": line})
     band = {"type": "trapezoid", "width": 0.12, "floor": 0.06, "depth": 0.045}

@@ -19,7 +19,7 @@ import numpy as np
 from manifold3d import Error, Manifold, OpType
 from numpy.typing import NDArray
 
-from renderer.sweep import End, Faces, Ribbon, Stroke, extent, positions, ribbons, solid, strokes_of, sweep
+from renderer.sweep import End, Faces, Facets, Ribbon, Stroke, extent, positions, ribbons, solid, strokes_of, sweep
 from renderer.tables import Floats, Ints, Pattern
 
 LIMIT = 4_000_000
@@ -34,6 +34,8 @@ class SolidMesh(NamedTuple):
     vertices: Floats  # (n, 3) pattern units (p, q, w)
     triangles: Ints  # (m, 3)
     slot: Ints  # (m,) material slot: -1 the object's own, else as Pattern.facet_slot
+    bend: Floats  # (m, 4) of facets swept along an arc: its centre (p, q) and the normal's part away from it and up,
+    # so that normals are not those of the chords; 0 for all others
 
 
 class _Box(NamedTuple):
@@ -58,8 +60,8 @@ def build(
 ) -> SolidMesh:
     """The solid over `window` (p0, q0, p1, q1), and a margin around it whose grooves cast their shadows into it.
 
-    `arc_tolerance` is how far chords may leave arcs and curved scales (default: a thousandth of the groove's
-    half-width). Raises ValueError where the mesh would have more than `limit` triangles.
+    `arc_tolerance` is how far chords may leave arcs and curved scales (default: ARC of the groove's half-width).
+    Raises ValueError where the mesh would have more than `limit` triangles.
     """
     p0, q0, p1, q1 = window
     if not (p1 > p0 and q1 > q0 and all(math.isfinite(v) for v in window)):
@@ -77,19 +79,20 @@ def build(
     tower = max(above - below, 1e-3 * margin)
     plate = _Box(box.p0 - 0.01 * margin, box.q0 - 0.01 * margin, box.p1 + 0.01 * margin, box.q1 + 0.01 * margin)
     whole = _block(plate if levels else box, below, 0.0)
+    known = Facets()
     raised = lowered = False
     for level in levels:
         if raised and level["clear"]:
-            whole = _join([whole, *_solids(level["clear"], box)], OpType.Subtract)
+            whole = _join([whole, *_solids(level["clear"], box, known)], OpType.Subtract)
         fill = level["fill"] if lowered else []
         if fill or level["add"]:
-            whole = _join([whole, *_solids(fill, box), *_solids(level["add"], box)], OpType.Add)
+            whole = _join([whole, *_solids(fill, box, known), *_solids(level["add"], box, known)], OpType.Add)
         if level["remove"]:
-            whole = _join([whole, *_solids(level["remove"], box)], OpType.Subtract)
+            whole = _join([whole, *_solids(level["remove"], box, known)], OpType.Subtract)
         raised, lowered = raised or bool(level["add"]), lowered or bool(level["remove"])
     if levels:
         whole = _join([whole, _block(box, below - tower, above + tower)], OpType.Intersect)
-    return _mesh(pattern, whole)
+    return _mesh(pattern, whole, known)
 
 
 def _levels(
@@ -235,10 +238,10 @@ def _crossings(chords: Floats, facets: Floats) -> float:
     return 0.5 * total * n / len(some)
 
 
-def _solids(copies: list[_Copy], box: _Box) -> list[Manifold]:
+def _solids(copies: list[_Copy], box: _Box, known: Facets) -> list[Manifold]:
     """The swept solids, those that are well apart put together in one: booleans take time for every solid."""
     if len(copies) < 3:
-        return [solid([sweep(copy.ribbon, copy.shift)]) for copy in copies]
+        return [solid([sweep(copy.ribbon, copy.shift, known)]) for copy in copies]
     taken: list[NDArray[np.bool_]] = []
     groups: list[list[Faces]] = []
     for copy in copies:
@@ -250,7 +253,7 @@ def _solids(copies: list[_Copy], box: _Box) -> list[Manifold]:
             if not (taken[i] & cells).any():
                 break
         taken[i] |= cells
-        groups[i].append(sweep(copy.ribbon, copy.shift))
+        groups[i].append(sweep(copy.ribbon, copy.shift, known))
     return [solid(group) for group in groups]
 
 
@@ -297,7 +300,7 @@ def _block(box: _Box, low: float, high: float) -> Manifold:
     return solid([Faces(corners, triangles, np.zeros(len(triangles), np.int64))])
 
 
-def _mesh(pattern: Pattern, whole: Manifold) -> SolidMesh:
+def _mesh(pattern: Pattern, whole: Manifold, known: Facets) -> SolidMesh:
     made = whole.to_mesh64()
     triangles = np.asarray(made.tri_verts).astype(np.int32)
     vertices = np.array(made.vert_properties[:, :3], np.float64)
@@ -305,5 +308,8 @@ def _mesh(pattern: Pattern, whole: Manifold) -> SolidMesh:
         index = np.arange(len(vertices), dtype=np.int32)
         index[np.asarray(made.merge_from_vert, np.int64)] = np.asarray(made.merge_to_vert, np.int32)
         triangles = index[triangles]
-    names = np.concatenate([[-1], np.asarray(pattern.facet_slot, np.int32)]).astype(np.int32)
-    return SolidMesh(vertices, np.ascontiguousarray(triangles), names[np.asarray(made.face_id, np.int64)])
+    rows = np.array(known.rows)[np.asarray(made.face_id, np.int64)]
+    names = np.concatenate([np.asarray(pattern.facet_slot, np.int32), [-1]]).astype(np.int32)
+    return SolidMesh(
+        vertices, np.ascontiguousarray(triangles), names[rows[:, 0].astype(np.int64)], np.ascontiguousarray(rows[:, 1:])
+    )

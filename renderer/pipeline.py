@@ -18,15 +18,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 import schema
-from renderer import CACHE, film, mesh, shading
+from renderer import CACHE, body, film, shading
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
 from renderer.line import LOOSE, NOT_MINE, PAPER, STRICT, line
 from renderer.raycast import Caster
-from renderer.tables import BARE, BASE, RECTANGLE, Floats, Pattern
-from renderer.trace import Solid, trace
+from renderer.tables import BARE, BASE, Floats, Pattern
+from renderer.trace import Truth
 
 TILE = 64  # pixels
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
@@ -42,7 +42,7 @@ class Picture:
 
     radiance: NDArray[np.float32]  # (H, W, 3) linear
     aovs: dict[str, NDArray[np.uint8]]  # method: (H, W) indices of tables.METHODS
-    # By stage, those of threads added up; kernels: loading them; solids: meshing them; total: by the clock.
+    # By stage, those of threads added up. By the clock: kernels (loading them), compile, solids (meshing them), total.
     seconds: dict[str, float]
     pattern_bytes: int  # memory of the compiled patterns
     shares: dict[str, float]  # by method, of the pixels that see an object
@@ -65,7 +65,7 @@ class Frame:
     settings: Settings
     caster: Caster
     flat: dict[int, NDArray[np.void]]
-    solids: dict[int, Solid]
+    truth: Truth | None  # of method geometry
     albedo: Floats
     radiance: NDArray[np.float32]
     method: NDArray[np.uint8]
@@ -76,6 +76,15 @@ class Frame:
         scene, settings = self.scene, self.settings
         clock = time.perf_counter
         begin = clock()
+        image = np.empty((tile.width * tile.height, 3))
+        methods = np.empty(tile.width * tile.height, np.uint8)
+        if self.truth is not None:
+            self.truth.render(
+                settings.samples, settings.seed, *tile, scene.camera, scene.lighting, scene.materials, scene.slots,
+                self.albedo, image, methods,
+            )  # fmt: skip
+            self._put(tile, image, methods)
+            return {"geometry": clock() - begin}
         seen = footprints(self.caster, scene.camera, scene.lighting.lights, tile, self.flat, settings.seed)
         cast = clock()
         radiance = np.zeros((len(seen.footprints), 3))
@@ -93,13 +102,14 @@ class Frame:
                 if len(chosen):
                     self._shade(row, pattern, seen, chosen, radiance, method, spent)
         start = clock()
-        image = np.empty((tile.width * tile.height, 3))
-        methods = np.empty(tile.width * tile.height, np.uint8)
         film.develop(seen.footprints, radiance, method, scene.lighting.sky, image, methods)
+        self._put(tile, image, methods)
+        return spent | {"cast": cast - begin, "film": clock() - start}
+
+    def _put(self, tile: Tile, image: Floats, methods: NDArray[np.uint8]) -> None:
         rows, columns = slice(tile.y, tile.y + tile.height), slice(tile.x, tile.x + tile.width)
         self.radiance[rows, columns] = image.reshape(tile.height, tile.width, 3)
         self.method[rows, columns] = methods.reshape(tile.height, tile.width)
-        return spent | {"cast": cast - begin, "film": clock() - start}
 
     def _shade(
         self, row: int, pattern: Pattern, seen: Footprints, chosen: NDArray[np.int64], radiance: Floats,
@@ -115,9 +125,6 @@ class Frame:
             spent[name] = spent.get(name, 0.0) + time.perf_counter() - start
 
         start = time.perf_counter()
-        if settings.method == "geometry" and pattern is not BARE:
-            trace(self.solids[row], settings.samples, settings.seed, seen.footprints, chosen, *rest)
-            return timed("geometry", start)
         if settings.method == "csg" and pattern is not BARE:
             csg(settings.samples, False, settings.seed, pattern, seen.footprints, chosen, *rest)
             return timed("csg", start)
@@ -142,11 +149,13 @@ def render(
     cancelled: Callable[[], bool] | None = None,
     meshes: Callable[[str], bytes] | None = None,
     patterns: PatternCache | None = None,
+    solids: dict[str, Truth] | None = None,
     tile: int = TILE,
 ) -> Picture:
     """Render a scene. What is not given is the scene's own; threads: one a processor.
 
     progress: called with the part done, 0 to 1. cancelled: asked between tiles. meshes: a mesh file's bytes by name.
+    solids: what other renders have meshed, by what it depends on; more may come to it.
     Raises RenderError where the scene cannot be rendered, Cancelled where `cancelled` says so.
     """
     begin = time.perf_counter()
@@ -160,7 +169,14 @@ def render(
         scene, resolution or scene.camera.resolution, patterns if patterns is not None else PatternCache(), meshes
     )
     seconds["compile"] = time.perf_counter() - start
-    frame = _frame(compiled, settings)
+    truth = None
+    if settings.method == "geometry":
+        start = time.perf_counter()
+        solids = {} if solids is None else solids
+        key = scene.model_dump_json(include={"objects", "patterns", "lights"}) + repr(scene.camera.origin)
+        truth = solids[key] if key in solids else solids.setdefault(key, _truth(compiled))
+        seconds["solids"] = time.perf_counter() - start
+    frame = _frame(compiled, settings, truth)
     _tiles(frame, tile, threads or os.cpu_count() or 1, progress, cancelled)
     seconds |= frame.seconds
     seconds["total"] = time.perf_counter() - begin
@@ -170,7 +186,7 @@ def render(
         seconds=seconds,
         pattern_bytes=sum(table_bytes(pattern) for pattern in compiled.patterns),
         shares=film.shares(frame.method),
-        solid_bytes=sum(solid.bytes for solid in frame.solids.values()),
+        solid_bytes=truth.bytes if truth else 0,
     )
 
 
@@ -180,50 +196,34 @@ def _albedo() -> Floats:
     return shading.gloss_albedo(16, 128)
 
 
-def _frame(compiled: CompiledScene, settings: Settings) -> Frame:
+def _frame(compiled: CompiledScene, settings: Settings, truth: Truth | None = None) -> Frame:
     caster = Caster(compiled.objects, compiled.triangles)
     width, height = compiled.resolution
     lit = bool(compiled.lighting.sky.any())
-    flat = flat_frames(caster, compiled.camera.origin)
-    begin = time.perf_counter()
-    solids = _solids(compiled, flat) if settings.method == "geometry" else {}
     return Frame(
         scene=compiled,
         settings=settings,
         caster=caster,
-        flat=flat,
-        solids=solids,
+        flat=flat_frames(caster, compiled.camera.origin),
+        truth=truth,
         albedo=_albedo() if lit else np.zeros((2, 2, 2)),
         radiance=np.zeros((height, width, 3), np.float32),
         method=np.zeros((height, width), np.uint8),
-        seconds={"solids": time.perf_counter() - begin} if solids else {},
     )
 
 
-def _solids(compiled: CompiledScene, flat: dict[int, NDArray[np.void]]) -> dict[int, Solid]:
-    """The solids of the flat objects that the camera sees, by row of OBJECT."""
-    solids = {}
+def _truth(compiled: CompiledScene) -> Truth:
+    """The scene as real geometry."""
+    bodies = []
     for row, obj in enumerate(compiled.objects):
-        if obj["pattern"] < 0:
-            continue
-        if obj["shape"] != RECTANGLE:
-            raise RenderError(
-                Fault(f"/objects/{row}/shape/type", "a rectangle, as the method is geometry", "a curved shape")
-            )
-        if row not in flat:
-            continue
-        su, sv, du, dv = obj["mapping"]
-        pattern: Pattern = compiled.patterns[obj["pattern"]]
+        pattern = compiled.patterns[obj["pattern"]] if obj["pattern"] >= 0 else BARE
         try:
-            solids[row] = Solid(*mesh.build(pattern, (du, dv, du + su, dv + sv), margin=_margin(pattern, (su, sv))))
+            bodies.append(
+                body.build(row, obj, pattern, compiled.triangles, compiled.camera.origin, compiled.lighting.lights)
+            )
         except ValueError as error:
             raise RenderError(Fault(f"/objects/{row}/pattern", "a pattern that can be meshed", str(error))) from None
-    return solids
-
-
-def _margin(pattern: Pattern, size: tuple[float, float]) -> float:
-    """How far the solid goes on past the object's edge, to be seen under it and to throw shadows, pattern units."""
-    return min(max(4.0 * pattern.reach, 8.0 * (pattern.height + pattern.depth)), max(size)) or 0.05 * max(size)
+    return Truth(bodies)
 
 
 def _tiles(
@@ -283,13 +283,16 @@ def warm_up(*, geometry: bool = False, meshes: bool = False) -> float:
         _warm.add("analytic")
     if geometry and "geometry" not in _warm:
         _try("geometry", {"type": "rectangle", "size": [2, 2]})
+        _try("geometry", {"type": "sphere", "radius": 1})
+        _try("geometry", _MESH)
         _warm.add("geometry")
     if meshes and "meshes" not in _warm:
-        _try("line", {"type": "mesh", "file": "triangle.obj"})
+        _try("line", _MESH)
         _warm.add("meshes")
     return time.perf_counter() - begin
 
 
+_MESH: dict[str, object] = {"type": "mesh", "file": "triangle.obj"}
 _TRIANGLE = b"""v -2 -2 0\nv 2 -2 0\nv 0 2 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n"""
 
 
@@ -309,4 +312,5 @@ def _try(method: str, shape: dict[str, object]) -> None:
     ).scene  # fmt: skip
     assert scene is not None
     compiled = compile_scene(scene, (2, 2), PatternCache(), lambda _: _TRIANGLE)
-    _frame(compiled, Settings(method, 1, 0)).tile(Tile(0, 0, 2, 2))
+    truth = _truth(compiled) if method == "geometry" else None
+    _frame(compiled, Settings(method, 1, 0), truth).tile(Tile(0, 0, 2, 2))

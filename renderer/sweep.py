@@ -2,8 +2,8 @@
 
 A *stroke* is a straight or circular path with a cross-section polyline. In its local frame (s along the path, b to
 the left of it, w up) it covers `start(b) <= s <= finish(b)`, where each end is `at + slope * b + wedge * |b|`: square,
-mitred or a wedge, which is all that the ends of DESIGN 1.2 need. Triangles carry the row of `Pattern.facet_slot` of
-the facet they lie on, plus one; 0 stands for a wall that no facet makes.
+mitred or a wedge, which is all that the ends of DESIGN 1.2 need. Triangles carry the number of the facet they lie on
+(see `Facets`); 0 stands for a wall that no facet makes.
 
 Everything here is exact for straight strokes whose scale is constant or linear. Arcs, and scales that vary in another
 way, are cut into rings that stay within a given tolerance.
@@ -35,6 +35,8 @@ from renderer.tables import (
 HAIR = 1e-6
 """How far pieces that would only touch are made to overlap, as a share of the groove's half-width. Removed solids that
 only touch leave a wall of no thickness between them, which still casts shadows."""
+
+ARC = 4e-3  # how far chords may leave arcs and curved scales, as a share of the groove's half-width
 
 _TURN = math.radians(3.0)  # the largest angle of an arc between two rings, whatever the tolerance
 _THIN = 1e-6  # the smallest scale, as a share of the groove's largest: keeps a groove that fades out a valid solid
@@ -178,7 +180,7 @@ def strokes_of(pattern: Pattern, index: int, tolerance: float | None) -> list[St
         return []
     hair = HAIR * half
     length, curvature = float(piece["length"]), float(piece["curvature"])
-    tol = 1e-3 * half if tolerance is None else tolerance
+    tol = ARC * half if tolerance is None else tolerance
     body = Stroke(
         x=float(piece["x"]),
         y=float(piece["y"]),
@@ -568,16 +570,44 @@ def ribbons(stroke: Stroke, *, top: float, bottom: float) -> dict[str, list[Ribb
     return out
 
 
+class Facets:
+    """The facets that a solid's triangles lie on, numbered from 1 on."""
+
+    def __init__(self) -> None:
+        self.rows: list[tuple[int, float, float, float, float]] = [(-1, 0.0, 0.0, 0.0, 0.0)]
+        """(slot, centre p, centre q, radial, up): the row of Pattern.facet_slot, and for facets swept along an arc its
+        centre and the unit normal there, outward from the centre and upward; radial = up = 0 for all others."""
+        self._numbers: dict[tuple[int, float, float, float, float], int] = {}
+
+    def number(self, stroke: Stroke, facet: int, shift: tuple[float, float]) -> int:
+        """Of a facet of a stroke moved by `shift`."""
+        row = (stroke.slot + facet, 0.0, 0.0, 0.0, 0.0)
+        if stroke.curvature != 0.0 and stroke.scale.kind == SCALE_CONSTANT:
+            b, w, of = stroke.section
+            edges = np.flatnonzero(of == facet)
+            db, dw = np.diff(b)[edges], np.diff(w)[edges]
+            i = int(np.argmax(np.hypot(db, dw)))
+            length = math.hypot(db[i], dw[i])
+            if length > 0.0:
+                radius = 1.0 / stroke.curvature
+                p, q = stroke.x - stroke.ty * radius + shift[0], stroke.y + stroke.tx * radius + shift[1]
+                row = (row[0], p, q, math.copysign(1.0, radius) * dw[i] / length, db[i] / length)
+        if row not in self._numbers:
+            self._numbers[row] = len(self.rows)
+            self.rows.append(row)
+        return self._numbers[row]
+
+
 class Faces(NamedTuple):
     """A closed mesh with tags."""
 
     vertices: Floats  # (n, 3)
     triangles: NDArray[np.int64]  # (m, 3)
-    tags: NDArray[np.int64]  # (m,)
+    tags: NDArray[np.int64]  # (m,) numbers of `Facets`, 0: none
 
 
-def sweep(ribbon: Ribbon, shift: tuple[float, float]) -> Faces:
-    """The solid of a ribbon, moved by `shift`."""
+def sweep(ribbon: Ribbon, shift: tuple[float, float], known: Facets) -> Faces:
+    """The solid of a ribbon, moved by `shift`; what it is made of goes into `known`."""
     stroke, section = ribbon.stroke, ribbon.section
     edges, caps, groups = _loop(section, ribbon.up)
     m, n = len(section.b), len(groups)
@@ -604,7 +634,8 @@ def sweep(ribbon: Ribbon, shift: tuple[float, float]) -> Faces:
     lo, hi = follow[:, None] * size, ahead[:, None] * size
     one = np.where(flip, np.stack([lo + start, lo + stop, hi + start]), np.stack([lo + start, lo + stop, hi + stop]))
     two = np.where(flip, np.stack([lo + stop, hi + stop, hi + start]), np.stack([lo + start, hi + stop, hi + start]))
-    tag = np.where(facet >= 0, facet + stroke.slot + 1, 0)
+    numbers = {-1: 0} | {int(f): known.number(stroke, int(f), shift) for f in np.unique(facet[facet >= 0])}
+    tag = np.array([numbers[int(f)] for f in facet], np.int64)
     faces = [one.reshape(3, -1).T, two.reshape(3, -1).T]
     tags = [np.tile(tag, len(follow)), np.tile(tag, len(follow))]
     if not stroke.closed:

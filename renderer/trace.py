@@ -1,217 +1,568 @@
-"""Method `geometry`: the solid as a real mesh, traced by Embree with n stratified samples a footprint.
+"""Method `geometry`: real geometry, traced by Embree with n stratified samples a pixel, each a ray of its own.
 
-The ground truth and the peer of the analytic methods. Rays are traced in pattern space, shrunk so that the window
-fills [-1, 1]: Embree's single precision is finest there. What Embree finds is met again in double precision, and
-shadow rays start OFFSET above it. Too small an offset makes facets shade themselves, too large a one lets light leak
-under ridges: the part of a groove's width that is wrongly lit at a shadow's edge is about OFFSET over that width,
-which for a groove of 1/250 of the window is 1e-4.
+The ground truth and the peer of the analytic methods: it shares no geometry with them, no footprints, frames or
+spans. Embree's single precision is finest where a body fills [-1, 1], so each is traced in a space of its own; what
+Embree finds is met again in double precision. Shadow rays start OFFSET off their triangle. Too small an offset makes
+facets shade themselves, too large a one lets light leak under ridges: the part of a groove's width that is wrongly
+lit at a shadow's edge is about OFFSET over that width, which for a groove of 1/250 of the body is 1e-4.
+
+Normals are not those of the chords: facets swept along an arc have the arc's, and pattern space is carried into the
+world by the map's derivatives at the very point.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
+from renderer.body import Base, Body, facing
 from renderer.geometry.random import jitter, seed_of
-from renderer.geometry.view import on_plane, view_of
-from renderer.kernel import kernel
-from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
-from renderer.tables import GEOMETRY, Camera, Floats, Ints, Lighting
+from renderer.kernel import kernel, leaf
+from renderer.shading import Vector, ambient, dot, lit_by, unit
+from renderer.tables import CYLINDER, GEOMETRY, MESH, POINT, RECTANGLE, Camera, Floats, Ints, Lighting
 
 OFFSET = 4e-7
 RAYS = 1 << 18  # traced at a time
 
+Bools = NDArray[np.bool_]
 
-class Solid:
-    """A flat object's solid, ready for rays."""
 
-    def __init__(self, vertices: Floats, triangles: Ints, slot: Ints) -> None:
-        """vertices (n, 3) pattern units, triangles (m, 3) outward, slot (m,) material slots; -1: the object's own."""
-        low, high = vertices.min(axis=0), vertices.max(axis=0)
-        self.middle = 0.5 * (low + high)
-        self.middle[2] = 0.0
-        self.scale = 2.0 / float(max(high[0] - low[0], high[1] - low[1]))
-        self.top = float(high[2])
-        self.corners = np.ascontiguousarray((vertices[triangles] - self.middle) * self.scale)
-        self.slot = slot
-        normals = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
-        length = np.linalg.norm(normals, axis=1, keepdims=True)
-        self.normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0)
-        self._scene = EmbreeScene(robust=True)
-        TriangleMesh(self._scene, self.corners.astype(np.float32))
+class Hits(NamedTuple):
+    """What rays meet first."""
 
-    @property
-    def bytes(self) -> int:
-        """Memory of the mesh alone, single precision, as a tracer needs it."""
-        return len(self.corners) * 3 * 4 + len(np.unique(self.corners.reshape(-1, 3), axis=0)) * 12
+    t: Floats  # (n,) in lengths of the direction; inf: nothing
+    body: Ints  # (n,) index of the truth's bodies; -1: nothing
+    triangle: Ints  # (n,) of the body; -1: the plane of a bare rectangle
+    back: Bools  # (n,) seen from behind: bare, and turned to the viewer
+    point: Floats  # (n, 3) world
+    normal: Floats  # (n, 3) world, unit: what light meets
+    slot: Ints  # (n,) material slot: -1 the object's own
 
-    def first(self, origins: Floats, directions: Floats) -> Ints:
-        """The nearest triangle (n,) of each ray, -1: none."""
-        return np.asarray(
-            self._scene.run(origins.astype(np.float32), directions.astype(np.float32), output=1)["primID"], np.int32
+
+class Traced:
+    """A body, ready for rays."""
+
+    def __init__(self, body: Body) -> None:
+        self.body = body
+        self.dual: Floats = np.asarray(np.linalg.inv(body.axes), np.float64)
+        self.top = 0.0
+        self._scene: EmbreeScene | None = None
+        if len(body.corners):
+            low, high = body.corners.min(axis=(0, 1)), body.corners.max(axis=(0, 1))
+            self.middle = 0.5 * (low + high)
+            if body.shape == RECTANGLE:
+                self.middle[2] = 0.0
+            self.scale = 2.0 / float((high - low)[: 2 if body.shape == RECTANGLE else 3].max())
+            self.top = float(high[2])
+            self.corners = np.ascontiguousarray((body.corners - self.middle) * self.scale)
+            self.normals = body.normals if body.shape == RECTANGLE else facing(self.corners)
+            self._scene = EmbreeScene(robust=True)
+            TriangleMesh(self._scene, self.corners.astype(np.float32))
+
+    def cast(self, index: int, origin: Floats, directions: Floats, hits: Hits) -> None:
+        """Enter itself as `index` where it is nearer than what `hits` has."""
+        if self.body.shape == RECTANGLE:
+            cross_window(index, self.body.window, self._inside(origin), self.dual, directions, hits)
+        else:
+            assert self._scene is not None
+            start = (self._inside(origin) - self.middle) * self.scale
+            inside = directions @ self.dual.T
+            origins = np.ascontiguousarray(np.broadcast_to(start.astype(np.float32), directions.shape))
+            row = self._first(origins, inside)
+            meet_shell(index, self.corners, self.normals, row, start, inside, self.scale, hits)
+
+    def resolve(self, index: int, origin: Floats, directions: Floats, hits: Hits) -> None:
+        """Find point, normal and slot of the hits that are its own."""
+        which = np.flatnonzero(hits.body == index)
+        body = self.body
+        if not len(which):
+            return
+        if body.shape != RECTANGLE:
+            place_on_shell(
+                which, body.origin, body.axes, self.corners, self.normals, self.middle, self.scale, body.normals,
+                body.coordinates, body.slot, body.bend, body.cell, body.base, origin, directions, hits,
+            )  # fmt: skip
+            return
+        eye = self._inside(origin)
+        if self._scene is None or eye[2] <= 0.0:
+            place_on_plane(which, body.axes, origin, directions, hits)
+            return
+        origins, inside = np.empty((len(which), 3)), np.empty((len(which), 3))
+        shoot(
+            which,
+            eye,
+            self.dual,
+            max(self.top, 0.0) + 1e-3 / self.scale,
+            self.middle,
+            self.scale,
+            directions,
+            origins,
+            inside,
         )
+        place_on_plate(
+            which, body.origin, body.axes, self.dual, self.corners, self.normals, self.middle, self.scale, body.slot,
+            body.bend, self._first(origins.astype(np.float32), inside), origins, inside, origin, directions, hits,
+        )  # fmt: skip
 
-    def blocked(self, origins: Floats, directions: Floats, far: Floats) -> NDArray[np.bool_]:
-        """Whether anything stands in the way of each ray (n,) within `far`."""
+    def block(self, index: int, hits: Hits, towards: Floats, far: float, which: NDArray[np.int64]) -> Bools:
+        """Whether it stands in the way (n,) from the points `which` of `hits` along far times `towards` (n, 3)."""
+        body = self.body
+        own = hits.body[which] == index
+        if body.shape == RECTANGLE:
+            blocked = ~own & cross_segment(body.window, body.origin, self.dual, hits.point, towards, far, which)
+            own &= ~hits.back[which]
+            if self._scene is None or not own.any():
+                return np.asarray(blocked)
+            blocked[own] = self._occluded(hits, towards[own], far, which[own])
+            return np.asarray(blocked)
+        return self._occluded(hits, towards, far, which, own)
+
+    def _occluded(
+        self, hits: Hits, towards: Floats, far: float, which: NDArray[np.int64], own: Bools | None = None
+    ) -> Bools:
+        """Whether its triangles are met. own: which of the points lie on it; all, where it is None."""
+        assert self._scene is not None
+        count = len(which)
+        origins, directions, lengths = np.empty((count, 3)), np.empty((count, 3)), np.empty(count)
+        leave(
+            which, np.ones(count, np.bool_) if own is None else own, self.body.origin, self.dual, self.normals,
+            self.middle, self.scale, far, towards, hits, origins, directions, lengths,
+        )  # fmt: skip
         found = self._scene.run(
-            origins.astype(np.float32), directions.astype(np.float32), far.astype(np.float32), query="OCCLUDED"
+            origins.astype(np.float32), directions.astype(np.float32), lengths.astype(np.float32), query="OCCLUDED"
         )
         return np.asarray(found >= 0)
 
+    def _inside(self, point: Floats) -> Floats:
+        """A world point where the body is traced, but for the middle and the scale."""
+        return np.asarray(self.dual @ (point - self.body.origin))
 
-def trace(
-    solid: Solid, samples: int, seed: int, footprints: NDArray[np.void], chosen: NDArray[np.int64],
-    frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void],
-    slots: NDArray[np.int32], albedo: Floats, radiance: Floats, method: NDArray[np.uint8],
-) -> None:  # fmt: skip
-    """Shade the footprints `chosen` of one flat object; write their radiance (n, 3) and method.
+    def _first(self, origins: NDArray[np.float32], directions: Floats) -> Ints:
+        assert self._scene is not None
+        return np.asarray(self._scene.run(origins, directions.astype(np.float32), output=1)["primID"], np.int32)
 
-    samples: at least so many a footprint, in a grid of strata. slots: rows of `materials`, the object's own first.
-    """
-    columns = math.ceil(math.sqrt(samples))
-    rows = math.ceil(samples / columns)
-    batch = max(RAYS // (columns * rows), 1)
-    for begin in range(0, len(chosen), batch):
-        part = chosen[begin : begin + batch]
-        count = len(part) * columns * rows
-        origins, directions = np.empty((count, 3)), np.empty((count, 3))
-        shoot(
-            footprints,
-            part,
-            frames,
-            camera,
-            columns,
-            rows,
-            seed,
-            solid.middle,
-            solid.scale,
-            solid.top,
-            origins,
-            directions,
-        )
-        row = solid.first(origins, directions)
-        points = np.empty((count, 3))
-        meet(solid.corners, solid.normals, row, origins, directions, points)
-        lit = np.zeros((len(lighting.lights), count), np.bool_)
-        for index in range(len(lighting.lights)):
-            facing = np.zeros(count, np.bool_)
-            towards, far = np.zeros((count, 3)), np.zeros(count)
-            aim(
-                footprints, part, frames, lighting.lights[index : index + 1], index, columns * rows, solid.middle,
-                solid.scale,
-                points, solid.normals, row, facing, towards, far,
+
+class Truth:
+    """A scene as real geometry."""
+
+    def __init__(self, bodies: list[Body]) -> None:
+        self.bodies = [Traced(body) for body in bodies]
+        self.bytes = sum(body.bytes for body in bodies)
+
+    def render(
+        self, samples: int, seed: int, x: int, y: int, width: int, height: int, camera: Camera, lighting: Lighting,
+        materials: NDArray[np.void], slots: tuple[NDArray[np.int32], ...], albedo: Floats, image: Floats,
+        method: NDArray[np.uint8],
+    ) -> None:  # fmt: skip
+        """Write the pixels of a tile: their radiance (n, 3) and method (n,).
+
+        samples: at least so many a pixel, in a grid of strata. slots: as CompiledScene.
+        """
+        columns = math.ceil(math.sqrt(samples))
+        rows = math.ceil(samples / columns)
+        each = columns * rows
+        names = np.concatenate(slots) if slots else np.zeros(0, np.int32)
+        start = np.cumsum([0, *(len(slot) for slot in slots)])[[traced.body.row for traced in self.bodies]]
+        batch = max(RAYS // each, 1)
+        for begin in range(0, width * height, batch):
+            stop = min(begin + batch, width * height)
+            count = (stop - begin) * each
+            directions = np.empty((count, 3))
+            rays(camera, x, y, width, begin, columns, rows, seed, directions)
+            hits = Hits(
+                np.full(count, np.inf), np.full(count, -1, np.int32), np.full(count, -1, np.int32),
+                np.zeros(count, np.bool_), np.zeros((count, 3)), np.zeros((count, 3)), np.full(count, -1, np.int32),
             )  # fmt: skip
-            which = np.flatnonzero(facing)
+            for index, traced in enumerate(self.bodies):
+                traced.cast(index, camera.origin, directions, hits)
+            for index, traced in enumerate(self.bodies):
+                traced.resolve(index, camera.origin, directions, hits)
+            lit = np.zeros((len(lighting.lights), count), np.bool_)
+            for row, light in enumerate(lighting.lights):
+                lit[row] = self._lit(light, hits)
+            gather(
+                camera, lighting, materials, names, start.astype(np.int64), albedo, each, directions, hits, lit,
+                image[begin:stop], method[begin:stop],
+            )  # fmt: skip
+
+    def _lit(self, light: np.void, hits: Hits) -> Bools:
+        """Which of the hits a light reaches."""
+        towards = np.empty((len(hits.t), 3))
+        which = np.flatnonzero(aim(light["kind"] == POINT, light["vector"], hits, towards))
+        for index, traced in enumerate(self.bodies):
             if len(which):
-                start = points[which] + OFFSET * solid.normals[row[which]]
-                lit[index, which] = ~solid.blocked(start, towards[which], far[which])
-        gather(
-            footprints, part, frames, lighting, materials, slots, albedo, columns * rows, solid.middle, solid.scale,
-            points, solid.normals, solid.slot, row, lit, radiance,
-        )  # fmt: skip
-    method[chosen] = GEOMETRY
+                which = which[
+                    ~traced.block(index, hits, towards[which], 1.0 if light["kind"] == POINT else np.inf, which)
+                ]
+        lit = np.zeros(len(hits.t), np.bool_)
+        lit[which] = True
+        return lit
+
+
+@kernel
+def rays(
+    camera: Camera, x: int, y: int, width: int, begin: int, columns: int, rows: int, seed: int, directions: Floats
+) -> None:
+    """The world directions (n, 3) of the samples of a tile's pixels from number `begin` on."""
+    each = columns * rows
+    for j in range(len(directions) // each):
+        px, py = float(x + (begin + j) % width), float(y + (begin + j) // width)
+        state = seed_of(seed, px, py)
+        for i in range(each):
+            state, ju = jitter(state)
+            state, jv = jitter(state)
+            u, v = px + (i % columns + ju) / columns, py + (i // columns + jv) / rows
+            for c in range(3):
+                directions[j * each + i, c] = camera.corner[c] + u * camera.right[c] + v * camera.down[c]
+
+
+@leaf
+def turned(m: Floats, v: Vector) -> Vector:
+    """A matrix times a vector."""
+    return (
+        m[0, 0] * v[0] + m[0, 1] * v[1] + m[0, 2] * v[2],
+        m[1, 0] * v[0] + m[1, 1] * v[1] + m[1, 2] * v[2],
+        m[2, 0] * v[0] + m[2, 1] * v[1] + m[2, 2] * v[2],
+    )
+
+
+@kernel
+def cross_window(index: int, window: Floats, eye: Floats, dual: Floats, directions: Floats, hits: Hits) -> None:
+    """A rectangle where rays from `eye` (pattern space) cross it nearer than what they have met."""
+    for k in range(len(directions)):
+        d = turned(dual, (directions[k, 0], directions[k, 1], directions[k, 2]))
+        if d[2] == 0.0:
+            continue
+        t = -eye[2] / d[2]
+        p, q = eye[0] + t * d[0], eye[1] + t * d[1]
+        if 0.0 < t < hits.t[k] and window[0] <= p <= window[2] and window[1] <= q <= window[3]:
+            hits.t[k], hits.body[k], hits.triangle[k], hits.back[k] = t, index, -1, eye[2] < 0.0
+
+
+@kernel
+def cross_segment(
+    window: Floats, origin: Floats, dual: Floats, points: Floats, towards: Floats, far: float, which: NDArray[np.int64]
+) -> Bools:
+    """Whether the ways from points[which] towards (n, 3) cross a rectangle."""
+    crossed = np.zeros(len(which), np.bool_)
+    for k in range(len(which)):
+        at = points[which[k]]
+        x = turned(dual, (at[0] - origin[0], at[1] - origin[1], at[2] - origin[2]))
+        d = turned(dual, (towards[k, 0], towards[k, 1], towards[k, 2]))
+        if d[2] != 0.0:
+            t = -x[2] / d[2]
+            p, q = x[0] + t * d[0], x[1] + t * d[1]
+            crossed[k] = 0.0 < t < far and window[0] <= p <= window[2] and window[1] <= q <= window[3]
+    return crossed
+
+
+@leaf
+def reached(n: Floats, corner: Floats, origin: Floats, direction: Vector) -> float:
+    """t where a ray meets a plane; NaN: nowhere."""
+    slope = n[0] * direction[0] + n[1] * direction[1] + n[2] * direction[2]
+    if slope == 0.0:
+        return math.nan
+    return (n[0] * (corner[0] - origin[0]) + n[1] * (corner[1] - origin[1]) + n[2] * (corner[2] - origin[2])) / slope
+
+
+@kernel
+def meet_shell(
+    index: int, corners: Floats, normals: Floats, row: Ints, start: Floats, directions: Floats, scale: float, hits: Hits
+) -> None:
+    """The triangles `row` (n,) that Embree found where they are nearer than what the rays have met."""
+    for k in range(len(row)):
+        if row[k] < 0:
+            continue
+        d = (directions[k, 0], directions[k, 1], directions[k, 2])
+        n = normals[row[k]]
+        t = reached(n, corners[row[k], 0], start, d) / scale
+        if 0.0 < t < hits.t[k]:
+            hits.t[k], hits.body[k], hits.triangle[k] = t, index, row[k]
+            hits.back[k] = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0
+
+
+@kernel
+def place_on_plane(which: NDArray[np.int64], axes: Floats, origin: Floats, directions: Floats, hits: Hits) -> None:
+    """The hits on a bare rectangle, or on the back of one."""
+    n = unit((axes[0, 2], axes[1, 2], axes[2, 2]))
+    for k in which:
+        sign = -1.0 if hits.back[k] else 1.0
+        for c in range(3):
+            hits.point[k, c] = origin[c] + hits.t[k] * directions[k, c]
+            hits.normal[k, c] = sign * n[c]
 
 
 @kernel
 def shoot(
-    footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera, columns: int,
-    rows: int, seed: int, middle: Floats, scale: float, top: float, origins: Floats, directions: Floats,
+    which: NDArray[np.int64], eye: Floats, dual: Floats, top: float, middle: Floats, scale: float, directions: Floats,
+    origins: Floats, inside: Floats,
 ) -> None:  # fmt: skip
-    """The samples' rays in the solid's space, from just above its highest point."""
-    k = 0
-    for index in chosen:
-        footprint = footprints[index]
-        frame = frames[footprint.frame]
-        view = view_of(footprint, frame, camera)
-        state = seed_of(seed, footprint.x, footprint.y)
-        for i in range(columns * rows):
-            state, ju = jitter(state)
-            state, jv = jitter(state)
-            p, q = on_plane(view, (i % columns + ju) / columns, (i // columns + jv) / rows)
-            dp, dq, dw = p - frame.eye[0], q - frame.eye[1], -frame.eye[2]
-            height = min(max(top, 0.0) + 1e-3 / scale, frame.eye[2])
-            t = height / frame.eye[2]
-            origins[k, 0], origins[k, 1] = (p - t * dp - middle[0]) * scale, (q - t * dq - middle[1]) * scale
-            origins[k, 2] = height * scale
-            length = math.sqrt(dp * dp + dq * dq + dw * dw)
-            directions[k, 0], directions[k, 1], directions[k, 2] = dp / length, dq / length, dw / length
-            k += 1
-
-
-@kernel
-def meet(corners: Floats, normals: Floats, row: Ints, origins: Floats, directions: Floats, points: Floats) -> None:
-    """Where the rays meet the planes of their triangles."""
-    for k in range(len(row)):
-        t = 0.0
-        if row[k] >= 0:
-            n, c, o, d = normals[row[k]], corners[row[k], 0], origins[k], directions[k]
-            slope = n[0] * d[0] + n[1] * d[1] + n[2] * d[2]
-            if slope != 0.0:
-                t = (n[0] * (c[0] - o[0]) + n[1] * (c[1] - o[1]) + n[2] * (c[2] - o[2])) / slope
+    """Rays for a plate's solid, where it is traced, from just above its highest point; directions are unit vectors."""
+    for j in range(len(which)):
+        k = which[j]
+        d = turned(dual, (directions[k, 0], directions[k, 1], directions[k, 2]))
+        t = max((top - eye[2]) / d[2], 0.0) if d[2] < 0.0 else 0.0
+        length = math.sqrt(dot(d, d))
         for c in range(3):
-            points[k, c] = origins[k, c] + t * directions[k, c]
+            origins[j, c] = (eye[c] + t * d[c] - middle[c]) * scale
+            inside[j, c] = d[c] / length
+
+
+@leaf
+def bent(normal: Floats, bend: Floats, p: float, q: float) -> Vector:
+    """The normal at (p, q): on facets swept along an arc not that of the chord."""
+    if bend[2] != 0.0 or bend[3] != 0.0:
+        x, y = p - bend[0], q - bend[1]
+        length = math.sqrt(x * x + y * y)
+        if length > 0.0:
+            return bend[2] * x / length, bend[2] * y / length, bend[3]
+    return normal[0], normal[1], normal[2]
 
 
 @kernel
-def aim(
-    footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], lights: NDArray[np.void],
-    bit: int, samples: int, middle: Floats, scale: float, points: Floats, normals: Floats, row: Ints,
-    facing: NDArray[np.bool_], towards: Floats, far: Floats,
+def place_on_plate(
+    which: NDArray[np.int64], corner: Floats, axes: Floats, dual: Floats, corners: Floats, normals: Floats,
+    middle: Floats, scale: float, slot: Ints, bend: Floats, row: Ints, origins: Floats, inside: Floats, origin: Floats,
+    directions: Floats, hits: Hits,
 ) -> None:  # fmt: skip
-    """For each point that faces the light (of one row): the way to it in the solid's space, and how far it is."""
-    for j in range(len(chosen)):
-        footprint = footprints[chosen[j]]
-        if (footprint.blocked >> np.uint64(bit)) & np.uint64(1):
-            continue
-        d = light_to_pattern(frames[footprint.frame], lights[0])
-        if d[2] <= 0.0:
-            continue
-        for k in range(j * samples, (j + 1) * samples):
-            if row[k] < 0:
-                continue
-            n = normals[row[k]]
-            x = (d[0] - d[3] * middle[0]) * scale - d[3] * points[k, 0]
-            y = (d[1] - d[3] * middle[1]) * scale - d[3] * points[k, 1]
-            z = d[2] * scale - d[3] * points[k, 2]
-            if n[0] * x + n[1] * y + n[2] * z <= 0.0:
-                continue
-            length = math.sqrt(x * x + y * y + z * z)
-            facing[k] = True
-            towards[k, 0], towards[k, 1], towards[k, 2] = x / length, y / length, z / length
-            far[k] = 1e30 if d[3] == 0.0 else length
+    """The hits on a plate's solid; where there is none the plane stands for it."""
+    for j in range(len(which)):
+        k, n = which[j], (0.0, 0.0, 1.0)
+        t = math.nan
+        d = (inside[j, 0], inside[j, 1], inside[j, 2])
+        if row[j] >= 0:
+            t = reached(normals[row[j]], corners[row[j], 0], origins[j], d)
+        if not math.isnan(t):
+            x = (
+                (origins[j, 0] + t * d[0]) / scale + middle[0],
+                (origins[j, 1] + t * d[1]) / scale + middle[1],
+                (origins[j, 2] + t * d[2]) / scale + middle[2],
+            )
+            for c in range(3):
+                hits.point[k, c] = corner[c] + axes[c, 0] * x[0] + axes[c, 1] * x[1] + axes[c, 2] * x[2]
+            n = bent(normals[row[j]], bend[row[j]], x[0], x[1])
+            hits.triangle[k], hits.slot[k] = row[j], slot[row[j]]
+        else:
+            for c in range(3):
+                hits.point[k, c] = origin[c] + hits.t[k] * directions[k, c]
+        world = unit(
+            (
+                n[0] * dual[0, 0] + n[1] * dual[1, 0] + n[2] * dual[2, 0],
+                n[0] * dual[0, 1] + n[1] * dual[1, 1] + n[2] * dual[2, 1],
+                n[0] * dual[0, 2] + n[1] * dual[1, 2] + n[2] * dual[2, 2],
+            )
+        )
+        hits.normal[k, 0], hits.normal[k, 1], hits.normal[k, 2] = world
+
+
+@leaf
+def cross(a: Vector, b: Vector) -> Vector:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@leaf
+def carried(n: Vector, a: Vector, b: Vector, c: Vector) -> Vector:
+    """A normal of pattern space, where its axes are a, b and c: times the inverse transpose."""
+    bc, ca, ab = cross(b, c), cross(c, a), cross(a, b)
+    sign = 1.0 if dot(ab, c) >= 0.0 else -1.0
+    return unit(
+        (
+            sign * (n[0] * bc[0] + n[1] * ca[0] + n[2] * ab[0]),
+            sign * (n[0] * bc[1] + n[1] * ca[1] + n[2] * ab[1]),
+            sign * (n[0] * bc[2] + n[1] * ca[2] + n[2] * ab[2]),
+        )
+    )
+
+
+@leaf
+def on_quadric(base: Base, normal: Floats, bend: Floats, p: float, q: float, w: float) -> Vector:
+    """The normal on a sphere or a cylinder, in the object's axes, by the derivatives of `body.carry`."""
+    m = base.mapping
+    n = bent(normal, bend, p, q)
+    lon = 2.0 * math.pi / m[0]
+    turn = lon * (p - m[2])
+    ct, st = math.cos(turn), math.sin(turn)
+    if base.shape == CYLINDER:
+        sigma = math.sqrt(lon * base.size[0] * base.size[1] / m[1])
+        along = (base.size[0] + w * sigma) * lon
+        return carried(
+            n, (-along * st, along * ct, 0.0), (0.0, 0.0, base.size[1] / m[1]), (sigma * ct, sigma * st, 0.0)
+        )
+    lat = math.pi / m[1]
+    tilt = lat * (q - m[3]) - 0.5 * math.pi
+    cosine, sine = max(math.cos(tilt), 1e-12), math.sin(tilt)
+    sigma = base.size[0] * math.sqrt(lon * lat * cosine)
+    radius, change = base.size[0] + w * sigma, -0.5 * w * sigma * sine / cosine * lat
+    out = (cosine * ct, cosine * st, sine)
+    north = (-sine * ct, -sine * st, cosine)
+    a = (-radius * lon * cosine * st, radius * lon * cosine * ct, 0.0)
+    b = (
+        radius * lat * north[0] + change * out[0],
+        radius * lat * north[1] + change * out[1],
+        radius * lat * north[2] + change * out[2],
+    )
+    return carried(n, a, b, (sigma * out[0], sigma * out[1], sigma * out[2]))
+
+
+@leaf
+def on_mesh(base: Base, cell: int, normal: Floats, bend: Floats, v: float, w: float, height: float) -> Vector:
+    """The normal on a triangle mesh, by its smooth normals; v, w weigh the triangle's second and third corner."""
+    x, pq, smooth, rise = base.corners[cell], base.pq[cell], base.normals[cell], base.rise[cell]
+    u = 1.0 - v - w
+    up = unit(
+        (
+            u * smooth[0, 0] + v * smooth[1, 0] + w * smooth[2, 0],
+            u * smooth[0, 1] + v * smooth[1, 1] + w * smooth[2, 1],
+            u * smooth[0, 2] + v * smooth[1, 2] + w * smooth[2, 2],
+        )
+    )
+    p1, q1, p2, q2 = pq[1, 0] - pq[0, 0], pq[1, 1] - pq[0, 1], pq[2, 0] - pq[0, 0], pq[2, 1] - pq[0, 1]
+    area = p1 * q2 - p2 * q1
+    if area == 0.0 or (normal[0] == 0.0 and normal[1] == 0.0 and bend[2] == 0.0):
+        return up
+    one, two = np.empty(3), np.empty(3)
+    for c in range(3):  # the edges of the triangle raised to this height
+        ground = x[0, c] + height * rise[0] * smooth[0, c]
+        one[c] = x[1, c] + height * rise[1] * smooth[1, c] - ground
+        two[c] = x[2, c] + height * rise[2] * smooth[2, c] - ground
+    for c in range(3):
+        one[c], two[c] = (q2 * one[c] - q1 * two[c]) / area, (p1 * two[c] - p2 * one[c]) / area
+    i = one[0] * up[0] + one[1] * up[1] + one[2] * up[2]
+    j = two[0] * up[0] + two[1] * up[1] + two[2] * up[2]
+    sigma = u * rise[0] + v * rise[1] + w * rise[2]
+    return carried(
+        bent(normal, bend, pq[0, 0] + v * p1 + w * p2, pq[0, 1] + v * q1 + w * q2),
+        (one[0] - i * up[0], one[1] - i * up[1], one[2] - i * up[2]),
+        (two[0] - j * up[0], two[1] - j * up[1], two[2] - j * up[2]),
+        (sigma * up[0], sigma * up[1], sigma * up[2]),
+    )
+
+
+@kernel
+def place_on_shell(
+    which: NDArray[np.int64], place: Floats, axes: Floats, corners: Floats, normals: Floats, middle: Floats,
+    scale: float, patterned: Floats, coordinates: Floats, slot: Ints, bend: Floats, cell: Ints, base: Base,
+    origin: Floats, directions: Floats, hits: Hits,
+) -> None:  # fmt: skip
+    """The hits on a curved body. Seen from behind a surface is bare."""
+    bare, straight = np.array([0.0, 0.0, 1.0]), np.zeros(4)
+    for k in which:
+        row = hits.triangle[k]
+        n = (normals[row, 0], normals[row, 1], normals[row, 2])
+        at = np.empty(3)
+        for c in range(3):
+            at[c] = origin[c] + hits.t[k] * directions[k, c]
+            hits.point[k, c] = at[c]
+        if cell[row] >= 0:
+            # Where in the triangle, and so where in pattern space.
+            x = np.empty(3)
+            for c in range(3):
+                inside = 0.0
+                for m in range(3):
+                    inside += axes[m, c] * (at[m] - place[m])  # a rotation: its inverse is its transpose
+                x[c] = (inside - middle[c]) * scale
+            e1 = (
+                corners[row, 1, 0] - corners[row, 0, 0],
+                corners[row, 1, 1] - corners[row, 0, 1],
+                corners[row, 1, 2] - corners[row, 0, 2],
+            )
+            e2 = (
+                corners[row, 2, 0] - corners[row, 0, 0],
+                corners[row, 2, 1] - corners[row, 0, 1],
+                corners[row, 2, 2] - corners[row, 0, 2],
+            )
+            r = (x[0] - corners[row, 0, 0], x[1] - corners[row, 0, 1], x[2] - corners[row, 0, 2])
+            area = dot(cross(e1, e2), n)
+            v = min(max(dot(cross(r, e2), n) / area, 0.0), 1.0) if area > 0.0 else 0.0
+            w = min(max(dot(cross(e1, r), n) / area, 0.0), 1.0 - v) if area > 0.0 else 0.0
+            y = coordinates[row]
+            p = y[0, 0] + v * (y[1, 0] - y[0, 0]) + w * (y[2, 0] - y[0, 0])
+            q = y[0, 1] + v * (y[1, 1] - y[0, 1]) + w * (y[2, 1] - y[0, 1])
+            h = y[0, 2] + v * (y[1, 2] - y[0, 2]) + w * (y[2, 2] - y[0, 2])
+            facet = bare if hits.back[k] else patterned[row]
+            arc = straight if hits.back[k] else bend[row]
+            if base.shape == MESH:
+                smooth = on_mesh(base, cell[row], facet, arc, p, q, h)
+                d = (directions[k, 0], directions[k, 1], directions[k, 2])
+                if dot(smooth, d) * dot(n, d) > 0.0:  # else the viewer would see it from behind
+                    n = smooth
+            else:
+                n = on_quadric(base, facet, arc, p, q, h)
+        sign = 1.0
+        if hits.back[k]:
+            sign = -1.0
+        else:
+            hits.slot[k] = slot[row]
+        for c in range(3):
+            hits.normal[k, c] = sign * (axes[c, 0] * n[0] + axes[c, 1] * n[1] + axes[c, 2] * n[2])
+
+
+@kernel
+def aim(point: bool, vector: Floats, hits: Hits, towards: Floats) -> Bools:
+    """Which hits face a light; the ways to it (n, 3), for a light at a point as long as they are."""
+    faces = np.zeros(len(towards), np.bool_)
+    for k in range(len(towards)):
+        if hits.body[k] >= 0:
+            along = 0.0
+            for c in range(3):
+                towards[k, c] = vector[c] - hits.point[k, c] if point else vector[c]
+                along += towards[k, c] * hits.normal[k, c]
+            faces[k] = along > 0.0
+    return faces
+
+
+@kernel
+def leave(
+    which: NDArray[np.int64], own: Bools, place: Floats, dual: Floats, normals: Floats, middle: Floats, scale: float,
+    far: float, towards: Floats, hits: Hits, origins: Floats, directions: Floats, lengths: Floats,
+) -> None:  # fmt: skip
+    """Rays from hits, where a body is traced: unit directions and how far they go."""
+    for j in range(len(which)):
+        k = which[j]
+        at = hits.point[k]
+        x = turned(dual, (at[0] - place[0], at[1] - place[1], at[2] - place[2]))
+        d = turned(dual, (towards[j, 0], towards[j, 1], towards[j, 2]))
+        length = math.sqrt(dot(d, d))
+        off = 0.0
+        row = hits.triangle[k]
+        if own[j]:
+            off = -OFFSET if hits.back[k] else OFFSET
+        for c in range(3):
+            origins[j, c] = (x[c] - middle[c]) * scale
+            if off != 0.0:
+                origins[j, c] += off * (normals[row, c] if row >= 0 else (1.0 if c == 2 else 0.0))
+            directions[j, c] = d[c] / length
+        lengths[j] = min(far * length * scale, 1e30)
 
 
 @kernel
 def gather(
-    footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], lighting: Lighting,
-    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, samples: int, middle: Floats, scale: float,
-    points: Floats, normals: Floats, slot: Ints, row: Ints, lit: NDArray[np.bool_], radiance: Floats,
+    camera: Camera, lighting: Lighting, materials: NDArray[np.void], names: Ints, start: NDArray[np.int64],
+    albedo: Floats, each: int, directions: Floats, hits: Hits, lit: Bools, image: Floats, method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
-    """Shade the samples and write the footprints' means."""
-    lights = lighting.lights
-    for j in range(len(chosen)):
-        index = chosen[j]
-        frame = frames[footprints[index].frame]
-        eye = to_world(frame, frame.eye[0], frame.eye[1], frame.eye[2])
+    """Shade the samples and write the pixels' means. names: material rows of all bodies, each from `start` on."""
+    lights, sky = lighting.lights, lighting.sky
+    for j in range(len(image)):
         red = green = blue = 0.0
-        for k in range(j * samples, (j + 1) * samples):
-            if row[k] < 0:
+        method[j] = 0
+        for k in range(j * each, (j + 1) * each):
+            if hits.body[k] < 0:
+                red, green, blue = red + sky[0], green + sky[1], blue + sky[2]
                 continue
-            n = normals[row[k]]
-            n_world = normal_to_world(frame, (n[0], n[1], n[2]))
-            at = to_world(
-                frame, points[k, 0] / scale + middle[0], points[k, 1] / scale + middle[1], points[k, 2] / scale
-            )
-            e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
-            material = materials[slots[slot[row[k]] + 1]]
-            colour = ambient(material, lighting.sky, albedo, n_world, e)
+            method[j] = GEOMETRY
+            n = (hits.normal[k, 0], hits.normal[k, 1], hits.normal[k, 2])
+            at = (hits.point[k, 0], hits.point[k, 1], hits.point[k, 2])
+            e = unit((-directions[k, 0], -directions[k, 1], -directions[k, 2]))
+            material = materials[names[start[hits.body[k]] + hits.slot[k] + 1]]
+            colour = ambient(material, sky, albedo, n, e)
             red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
             for l in range(len(lights)):
                 if lit[l, k]:
-                    colour = lit_by(lights[l], material, n_world, e, at)
+                    colour = lit_by(lights[l], material, n, e, at)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
-        radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / samples, green / samples, blue / samples
+        image[j, 0], image[j, 1], image[j, 2] = red / each, green / each, blue / each
