@@ -15,7 +15,9 @@ from renderer.tables import METHODS, Floats
 
 SUFFIXES = (".png", ".exr", ".npy")
 
-COLOURS = np.array([[0, 0, 0], [90, 90, 90], [60, 120, 200], [70, 170, 110], [220, 120, 50], [190, 60, 120]], np.uint8)
+COLOURS = np.array(
+    [[0, 0, 0], [90, 90, 90], [60, 120, 200], [70, 170, 110], [220, 120, 50], [190, 60, 120], [230, 200, 70]], np.uint8
+)
 """How the AOV `method` looks as PNG, by METHODS."""
 
 

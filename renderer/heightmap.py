@@ -43,6 +43,11 @@ class HeightMap(NamedTuple):
         return self.slots[self.share.argmax(axis=2)]
 
 
+def slots_of(pattern: Pattern) -> Ints:
+    """HeightMap.slots of a pattern."""
+    return np.unique(np.append(pattern.facet_slot + 1, 0)).astype(np.int32)
+
+
 def height_map(
     pattern: Pattern,
     window: Window,
@@ -57,7 +62,7 @@ def height_map(
     For heights finer than the texels ask for k times as many texels of one point each.
     """
     width, height = size
-    slots = np.unique(np.append(pattern.facet_slot + 1, 0)).astype(np.int32)
+    slots = slots_of(pattern)
     column = np.zeros(int(slots[-1]) + 1, np.int32)
     column[slots] = np.arange(len(slots))
     made = HeightMap(

@@ -18,19 +18,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 import schema
-from renderer import CACHE, body, film, shading
+from renderer import CACHE, body, film, relief, shading
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
 from renderer.line import LOOSE, NOT_MINE, PAPER, STRICT, line
 from renderer.raycast import Caster
+from renderer.relief import Textures
 from renderer.tables import BARE, BASE, Floats, Pattern
 from renderer.trace import Truth
 
 TILE = 64  # pixels
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
-METHODS = ("auto", "base", "segment", "line", "csg", "geometry")
+METHODS = ("auto", "base", "segment", "line", "csg", "geometry", "relief")
 AOVS = ("method",)
 
 _READY = CACHE / "ready"  # written once all kernels have been compiled
@@ -42,11 +43,12 @@ class Picture:
 
     radiance: NDArray[np.float32]  # (H, W, 3) linear
     aovs: dict[str, NDArray[np.uint8]]  # method: (H, W) indices of tables.METHODS
-    # By stage, those of threads added up. By the clock: kernels (loading them), compile, solids (meshing them), total.
+    # By stage, those of threads added up. By the clock: kernels (loading them), compile, solids (making what the method
+    # traces in place of the patterns), total.
     seconds: dict[str, float]
     pattern_bytes: int  # memory of the compiled patterns
     shares: dict[str, float]  # by method, of the pixels that see an object
-    solid_bytes: int = 0  # memory of the meshes that the method renders in place of the patterns
+    solid_bytes: int = 0  # memory of the meshes or textures that the method renders in place of the patterns
 
 
 class Settings(NamedTuple):
@@ -55,6 +57,7 @@ class Settings(NamedTuple):
     method: str
     samples: int
     seed: int
+    texels: int
 
 
 @dataclass
@@ -65,7 +68,7 @@ class Frame:
     settings: Settings
     caster: Caster
     flat: dict[int, NDArray[np.void]]
-    truth: Truth | None  # of method geometry
+    model: Truth | Textures | None  # what methods geometry and relief trace
     albedo: Floats
     radiance: NDArray[np.float32]
     method: NDArray[np.uint8]
@@ -78,8 +81,8 @@ class Frame:
         begin = clock()
         image = np.empty((tile.width * tile.height, 3))
         methods = np.empty(tile.width * tile.height, np.uint8)
-        if self.truth is not None:
-            self.truth.render(
+        if isinstance(self.model, Truth):
+            self.model.render(
                 settings.samples, settings.seed, *tile, scene.camera, scene.lighting, scene.materials, scene.slots,
                 self.albedo, image, methods,
             )  # fmt: skip
@@ -128,6 +131,9 @@ class Frame:
         if settings.method == "csg" and pattern is not BARE:
             csg(settings.samples, False, settings.seed, pattern, seen.footprints, chosen, *rest)
             return timed("csg", start)
+        if isinstance(self.model, Textures) and pattern is not BARE:
+            relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
+            return timed("relief", start)
         line(MODES.get(settings.method, LOOSE), pattern, seen.footprints, chosen, *rest)
         timed("line", start)
         left = chosen[method[chosen] == NOT_MINE]
@@ -143,40 +149,55 @@ def render(
     *,
     method: str | None = None,
     samples: int | None = None,
+    texels: int | None = None,
     threads: int | None = None,
     resolution: tuple[int, int] | None = None,
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
     meshes: Callable[[str], bytes] | None = None,
     patterns: PatternCache | None = None,
-    solids: dict[str, Truth] | None = None,
+    solids: dict[str, Truth | Textures] | None = None,
     tile: int = TILE,
 ) -> Picture:
     """Render a scene. What is not given is the scene's own; threads: one a processor.
 
     progress: called with the part done, 0 to 1. cancelled: asked between tiles. meshes: a mesh file's bytes by name.
-    solids: what other renders have meshed, by what it depends on; more may come to it.
+    solids: what other renders have made of the patterns, by what it depends on; more may come to it.
     Raises RenderError where the scene cannot be rendered, Cancelled where `cancelled` says so.
     """
     begin = time.perf_counter()
-    settings = Settings(method or scene.render.method, samples or scene.render.samples, scene.render.seed)
+    settings = Settings(
+        method or scene.render.method,
+        samples or scene.render.samples,
+        scene.render.seed,
+        texels or scene.render.texels,
+    )
     if settings.method not in METHODS:
         raise RenderError(Fault("/render/method", f"one of {', '.join(METHODS)}", repr(settings.method)))
     has_mesh = any(isinstance(item.shape, schema.Mesh) for item in scene.objects)
-    seconds = {"kernels": warm_up(geometry=settings.method == "geometry", meshes=has_mesh)}
+    seconds = {
+        "kernels": warm_up(
+            geometry=settings.method == "geometry", textures=settings.method == "relief", meshes=has_mesh
+        )
+    }
     start = time.perf_counter()
     compiled = compile_scene(
         scene, resolution or scene.camera.resolution, patterns if patterns is not None else PatternCache(), meshes
     )
     seconds["compile"] = time.perf_counter() - start
-    truth = None
-    if settings.method == "geometry":
+    model: Truth | Textures | None = None
+    if settings.method in ("geometry", "relief"):
         start = time.perf_counter()
         solids = {} if solids is None else solids
-        key = scene.model_dump_json(include={"objects", "patterns", "lights"}) + repr(scene.camera.origin)
-        truth = solids[key] if key in solids else solids.setdefault(key, _truth(compiled))
+        of = scene.model_dump_json(include={"objects", "patterns", "lights"})
+        key = f"{settings.method} {settings.texels} {scene.camera.origin} {of}"
+        if key not in solids and settings.method == "geometry":
+            solids[key] = _truth(compiled)
+        elif key not in solids:
+            solids[key] = _textures(compiled, settings.texels, threads, cancelled)
+        model = solids[key]
         seconds["solids"] = time.perf_counter() - start
-    frame = _frame(compiled, settings, truth)
+    frame = _frame(compiled, settings, model)
     _tiles(frame, tile, threads or os.cpu_count() or 1, progress, cancelled)
     seconds |= frame.seconds
     seconds["total"] = time.perf_counter() - begin
@@ -186,7 +207,7 @@ def render(
         seconds=seconds,
         pattern_bytes=sum(table_bytes(pattern) for pattern in compiled.patterns),
         shares=film.shares(frame.method),
-        solid_bytes=truth.bytes if truth else 0,
+        solid_bytes=model.bytes if model else 0,
     )
 
 
@@ -196,7 +217,7 @@ def _albedo() -> Floats:
     return shading.gloss_albedo(16, 128)
 
 
-def _frame(compiled: CompiledScene, settings: Settings, truth: Truth | None = None) -> Frame:
+def _frame(compiled: CompiledScene, settings: Settings, model: Truth | Textures | None = None) -> Frame:
     caster = Caster(compiled.objects, compiled.triangles)
     width, height = compiled.resolution
     lit = bool(compiled.lighting.sky.any())
@@ -205,7 +226,7 @@ def _frame(compiled: CompiledScene, settings: Settings, truth: Truth | None = No
         settings=settings,
         caster=caster,
         flat=flat_frames(caster, compiled.camera.origin),
-        truth=truth,
+        model=model,
         albedo=_albedo() if lit else np.zeros((2, 2, 2)),
         radiance=np.zeros((height, width, 3), np.float32),
         method=np.zeros((height, width), np.uint8),
@@ -224,6 +245,17 @@ def _truth(compiled: CompiledScene) -> Truth:
         except ValueError as error:
             raise RenderError(Fault(f"/objects/{row}/pattern", "a pattern that can be meshed", str(error))) from None
     return Truth(bodies)
+
+
+def _textures(
+    compiled: CompiledScene, texels: int, threads: int | None, cancelled: Callable[[], bool] | None
+) -> Textures:
+    """The textures of method relief."""
+    uv = compiled.triangles.uv, compiled.triangles.object
+    try:
+        return relief.textures(compiled.objects, compiled.patterns, *uv, texels, threads=threads, cancelled=cancelled)
+    except ValueError as error:
+        raise RenderError(Fault("/render/texels", "fewer texels for these patterns", str(error))) from None
 
 
 def _tiles(
@@ -270,10 +302,10 @@ def kernels_compiled() -> bool:
 _warm: set[str] = set()
 
 
-def warm_up(*, geometry: bool = False, meshes: bool = False) -> float:
+def warm_up(*, geometry: bool = False, textures: bool = False, meshes: bool = False) -> float:
     """Compile the kernels, or load them from their cache: the seconds that took, next to none from the second call.
 
-    The kernels of method `geometry`, and those of mesh files, are left until they are asked for.
+    The kernels of methods `geometry` and `relief`, and those of mesh files, are left until they are asked for.
     """
     begin = time.perf_counter()
     if "analytic" not in _warm:
@@ -286,6 +318,9 @@ def warm_up(*, geometry: bool = False, meshes: bool = False) -> float:
         _try("geometry", {"type": "sphere", "radius": 1})
         _try("geometry", _MESH)
         _warm.add("geometry")
+    if textures and "relief" not in _warm:
+        _try("relief", {"type": "rectangle", "size": [2, 2]})
+        _warm.add("relief")
     if meshes and "meshes" not in _warm:
         _try("line", _MESH)
         _warm.add("meshes")
@@ -312,5 +347,9 @@ def _try(method: str, shape: dict[str, object]) -> None:
     ).scene  # fmt: skip
     assert scene is not None
     compiled = compile_scene(scene, (2, 2), PatternCache(), lambda _: _TRIANGLE)
-    truth = _truth(compiled) if method == "geometry" else None
-    _frame(compiled, Settings(method, 1, 0), truth).tile(Tile(0, 0, 2, 2))
+    model: Truth | Textures | None = None
+    if method == "geometry":
+        model = _truth(compiled)
+    elif method == "relief":
+        model = _textures(compiled, 16, 1, None)
+    _frame(compiled, Settings(method, 1, 0, 16), model).tile(Tile(0, 0, 2, 2))

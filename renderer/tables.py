@@ -214,6 +214,6 @@ class Lighting(NamedTuple):
     sky: Floats  # (3,) radiance of the constant sky
 
 
-METHODS = ("none", "base", "segment", "line", "csg", "geometry")
+METHODS = ("none", "base", "segment", "line", "csg", "geometry", "relief")
 """What the AOV `method` counts: the index of the method that a pixel took; `none` where the camera sees no object."""
-NONE, BASE, SEGMENT_METHOD, LINE, CSG, GEOMETRY = range(6)
+NONE, BASE, SEGMENT_METHOD, LINE, CSG, GEOMETRY, RELIEF = range(7)

@@ -82,13 +82,20 @@ class Object(Model):
 class Render(Model):
     """How to render."""
 
-    method: Literal["auto", "base", "segment", "line", "csg", "geometry"] = Field(
+    method: Literal["auto", "base", "segment", "line", "csg", "geometry", "relief"] = Field(
         default="auto",
         description="auto takes the cheapest that keeps within `tolerance`; base leaves the grooves out; geometry "
-        "meshes them. Default: auto.",
+        "meshes them; relief marches rays through a texture of their heights. Default: auto.",
     )
     samples: int = Field(
         default=256, ge=1, le=65_536, description="Stratified samples a pixel where a method samples. Default: 256."
+    )
+    texels: int = Field(
+        default=1024,
+        ge=16,
+        le=8192,
+        description="Texels along the longer side of method relief's texture: of a surface, with a margin, or of one "
+        "tile. Default: 1024.",
     )
     bounces: int = Field(default=0, ge=0, le=16, description="How often light is followed on. Default: 0.")
     tolerance: float = Field(

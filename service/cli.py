@@ -48,6 +48,9 @@ def render(
     samples: Annotated[
         int | None, typer.Option(metavar="N", min=1, max=65536, help="Samples a pixel, instead of the scene's.")
     ] = None,
+    texels: Annotated[
+        int | None, typer.Option(metavar="N", min=16, max=8192, help="Method relief's, instead of the scene's.")
+    ] = None,
     threads: Annotated[int | None, typer.Option(metavar="N", min=1, max=1024, help="All cores otherwise.")] = None,
     resolution: Annotated[str | None, typer.Option(metavar="WxH", help="Instead of the camera's.")] = None,
     aov: Annotated[
@@ -77,6 +80,7 @@ def render(
                 checked,
                 method=method,
                 samples=samples,
+                texels=texels,
                 threads=threads,
                 resolution=size,
                 progress=progress,

@@ -31,6 +31,7 @@ class Wish:
     suffix: str
     method: str | None
     samples: int | None
+    texels: int | None
     resolution: tuple[int, int] | None
 
 
@@ -90,6 +91,7 @@ def paint(
             scene,
             method=wish.method,
             samples=wish.samples,
+            texels=wish.texels,
             threads=settings.threads,
             resolution=wish.resolution,
             cancelled=stopped,

@@ -141,6 +141,9 @@ async def render(
     samples: Annotated[
         int | None, Query(description="samples a pixel, where the method samples", ge=1, le=65536)
     ] = None,
+    texels: Annotated[
+        int | None, Query(description="texels along method relief's texture, instead of the scene's", ge=16, le=8192)
+    ] = None,
     resolution: Annotated[str | None, Query(description="WxH, instead of the camera's", max_length=16)] = None,
 ) -> Response:
     """Waits for the picture of a scene. The render stops when the client goes."""
@@ -149,6 +152,7 @@ async def render(
         SUFFIX_OF[negotiate(request.headers.get("accept"))],
         _method(method),
         samples,
+        texels,
         None if resolution is None else _resolution(resolution),
     )
     text = await bodies.read(request, here.settings.body_limit)
@@ -195,7 +199,7 @@ async def chart(
         seconds,
     )
     text = await bodies.read(request, here.settings.body_limit)
-    size = Wish(suffix=".png", method="base", samples=None, resolution=(1, 1))
+    size = Wish(suffix=".png", method="base", samples=None, texels=None, resolution=(1, 1))
     scene = await anyio.to_thread.run_sync(
         pictures.checked_for_service, text, size, here.settings, here.meshes, limiter=here.checks
     )

@@ -136,6 +136,7 @@ def test_mesh_beside_the_scene(intaglio: Command, scene: dict[str, Any], tmp_pat
         (("-o", "out.png", "--resolution", "0x10"), b"--resolution: expected WxH"),
         (("-o", "out.png", "--resolution", "99999x99999"), b"--resolution: expected WxH"),
         (("-o", "out.png", "--samples", "0"), b"--samples"),
+        (("-o", "out.png", "--texels", "8193"), b"--texels"),
         (("-o", "out.png", "--threads", "no"), b"--threads"),
         ((), b"--out"),
         (("-o", "out.png", "--colour"), b"--colour"),

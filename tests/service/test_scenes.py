@@ -80,18 +80,30 @@ def test_not_acceptable(client: TestClient, scene: dict[str, Any], accept: str) 
 
 
 def test_parameters(client: TestClient, scene: dict[str, Any], fake: FakeRenderer) -> None:
-    answer = client.post("/api/render?method=csg&samples=9&resolution=20x10", json=scene)
+    answer = client.post("/api/render?method=relief&samples=9&texels=64&resolution=20x10", json=scene)
     assert Image.open(io.BytesIO(answer.content)).size == (20, 10)
-    assert {key: fake.calls[0][key] for key in ("method", "samples", "resolution", "threads")} == {
-        "method": "csg",
+    assert {key: fake.calls[0][key] for key in ("method", "samples", "texels", "resolution", "threads")} == {
+        "method": "relief",
         "samples": 9,
+        "texels": 64,
         "resolution": (20, 10),
         "threads": SETTINGS.threads,
     }
 
 
 @pytest.mark.parametrize(
-    "query", ["method=best", "samples=0", "samples=x", "samples=65537", "resolution=0x4", "resolution=4", "resolution="]
+    "query",
+    [
+        "method=best",
+        "samples=0",
+        "samples=x",
+        "samples=65537",
+        "texels=15",
+        "texels=8193",
+        "resolution=0x4",
+        "resolution=4",
+        "resolution=",
+    ],
 )
 def test_wrong_parameters(client: TestClient, scene: dict[str, Any], fake: FakeRenderer, query: str) -> None:
     document = assert_problem(client.post(f"/api/render?{query}", json=scene), 422)
