@@ -1,6 +1,6 @@
 """Triangles of pattern space cut along the cells of a curved surface, so that each part can be carried onto it.
 
-Both sides of a cut compute the same points, bit for bit, and so the parts meet without gaps.
+Both sides of a cut compute the same points, along a grid bit for bit, and so the parts meet without gaps.
 """
 
 from __future__ import annotations
@@ -62,27 +62,29 @@ def cut_by_grid(corners: Floats, p: Floats, q: Floats, parts: Floats, sources: I
     Writes parts (k, 3, 3), the triangles they come from and their cells, as many as there is room for; returns how
     many there are.
     """
-    one, two = np.empty((CORNERS, 3)), np.empty((CORNERS, 3))
-    row, spare = np.empty((CORNERS, 3)), np.empty((CORNERS, 3))
+    above, row = np.empty((CORNERS, 3)), np.empty((CORNERS, 3))
+    right, part, rest = np.empty((CORNERS, 3)), np.empty((CORNERS, 3)), np.empty((CORNERS, 3))
     made = 0
     for t in range(len(corners)):
-        low, high = corners[t, :, 1].min(), corners[t, :, 1].max()
-        first = max(np.searchsorted(q, low, side="right") - 1, 0)
-        for j in range(first, len(q) - 1):
-            if q[j] > high:
-                break
-            one[:3] = corners[t]
-            count = cut(one, 3, 0.0, 1.0, -q[j], two)
-            count = cut(two, count, 0.0, -1.0, q[j + 1], row)
-            if count < 3:
-                continue
-            left, right = row[:count, 0].min(), row[:count, 0].max()
-            for i in range(max(np.searchsorted(p, left, side="right") - 1, 0), len(p) - 1):
-                if p[i] > right:
-                    break
-                kept = cut(row, count, 1.0, 0.0, -p[i], spare)
-                kept = cut(spare, kept, -1.0, 0.0, p[i + 1], one)
-                made = fan(one, kept, t, j * (len(p) - 1) + i, made, parts, sources, cells)
+        # What is left is cut line by line, so that an edge comes to the same parts in both triangles that share it.
+        above[:3] = corners[t]
+        j = max(np.searchsorted(q, above[:3, 1].min(), side="right") - 1, 0)
+        count = cut(above, 3, 0.0, 1.0, -q[j], rest)
+        above[:count] = rest[:count]
+        while count >= 3 and j + 1 < len(q):
+            across = cut(above, count, 0.0, -1.0, q[j + 1], row)
+            count = cut(above, count, 0.0, 1.0, -q[j + 1], rest)
+            above[:count] = rest[:count]
+            if across >= 3:
+                i = max(np.searchsorted(p, row[:across, 0].min(), side="right") - 1, 0)
+                across = cut(row, across, 1.0, 0.0, -p[i], right)
+                while across >= 3 and i + 1 < len(p):
+                    kept = cut(right, across, -1.0, 0.0, p[i + 1], part)
+                    across = cut(right, across, 1.0, 0.0, -p[i + 1], rest)
+                    right[:across] = rest[:across]
+                    made = fan(part, kept, t, j * (len(p) - 1) + i, made, parts, sources, cells)
+                    i += 1
+            j += 1
     return made
 
 
