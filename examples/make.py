@@ -1,4 +1,5 @@
-"""Writes the examples that are too long to write by hand: vinyl, hieroglyphs, brushed (with its mesh, vase.obj).
+"""Writes the examples that are too long to write by hand: vinyl, single, hieroglyphs, brushed (with its
+mesh, vase.obj).
 
     python examples/make.py
 
@@ -114,6 +115,39 @@ def vinyl() -> Json:
             "random": record("gold", [BROAD, SAW, STEEP], 3),
         },
         "objects": [*plates, table],
+        "render": {"method": "auto", "samples": 36},
+    }
+
+
+def single() -> Json:
+    """One side of few grooves, near enough that a mesh of them can be traced beside them."""
+    inner, count = 42.0, 96
+    outer = inner + count
+    side = 2.0 * (outer + 4.0)
+    grooves = [ring(4, inner - 6, "red"), ring(inner - 6, inner, "vinyl"), ring(outer, outer + 3, "vinyl")]
+    for start, run, profile in ((0, 30, SAW), (30, 14, V), (44, 32, BROAD), (76, 20, V)):
+        grooves.append(circles(inner + start + 0.5, run, profile))
+    return {
+        "intaglio": 1,
+        "camera": {"origin": [-0.3, -1.9, 1.15], "target": [0, -0.1, 0], "fov": 40, "resolution": [640, 480]},
+        "lights": [
+            {"type": "directional", "direction": [0.3, -0.75, -0.85], "irradiance": [4.2, 3.9, 3.4]},
+            {"type": "point", "position": [-1.5, 1, 1.4], "intensity": [5, 6, 8]},
+        ],
+        "materials": {
+            "vinyl": {"base_color": [0.05, 0.05, 0.055], "roughness": 0.4},
+            "sleeve": {"base_color": [0.3, 0.255, 0.19], "roughness": 0.9, "specular": 0.3},
+            "red": {"base_color": [0.55, 0.05, 0.03], "roughness": 0.7, "specular": 0.5},
+        },
+        "patterns": {"side": {"grooves": grooves}},
+        "objects": [
+            {
+                "shape": {"type": "rectangle", "size": [2, 2]},
+                "mapping": {"scale": [side, side], "offset": [-side / 2, -side / 2]},
+                "material": "sleeve",
+                "pattern": "side",
+            }
+        ],
         "render": {"method": "auto", "samples": 36},
     }
 
@@ -327,7 +361,7 @@ def brushed() -> Json:
 def main() -> None:
     """Write all files."""
     (HERE / "vase.obj").write_text(vase())
-    for scene in (vinyl, hieroglyphs, brushed):
+    for scene in (vinyl, single, hieroglyphs, brushed):
         (HERE / f"{scene.__name__}.json").write_text(text(scene()) + "\n")
 
 
