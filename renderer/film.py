@@ -52,7 +52,7 @@ def encode(radiance: NDArray[np.float32], suffix: str, exposure: float = 1.0) ->
     if suffix == ".npy":
         return _npy(radiance.astype(np.float32, copy=False))
     if suffix == ".exr":
-        return _exr({"RGB": radiance.astype(np.float32, copy=False)})
+        return exr({"RGB": radiance.astype(np.float32, copy=False)})
     raise ValueError(f"expected one of {', '.join(SUFFIXES)}, found {suffix!r}")
 
 
@@ -63,7 +63,7 @@ def encode_aov(values: NDArray[np.uint8], suffix: str) -> bytes:
     if suffix == ".npy":
         return _npy(values)
     if suffix == ".exr":
-        return _exr({"method": values.astype(np.float32)})
+        return exr({"method": values.astype(np.float32)})
     raise ValueError(f"expected one of {', '.join(SUFFIXES)}, found {suffix!r}")
 
 
@@ -93,7 +93,8 @@ def _npy(values: NDArray[np.float32] | NDArray[np.uint8]) -> bytes:
     return out.getvalue()
 
 
-def _exr(channels: dict[str, NDArray[np.float32]]) -> bytes:
+def exr(channels: dict[str, NDArray[np.float32]]) -> bytes:
+    """A file of float32 channels (H, W); (H, W, 3) for "RGB"."""
     import OpenEXR  # slow to load, and few pictures need it
 
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}

@@ -29,6 +29,8 @@ WRONG, UNREADABLE, STOPPED = 1, 2, 130  # exit codes; 0: all is well
 SCENE_LIMIT = 64 << 20  # bytes of a scene file
 MESH_LIMIT = 1 << 30  # bytes of a mesh file
 AOVS = ("method",)
+SOLIDS, MAP_FILES = (".glb", ".stl", ".ply", ".obj"), (".png", ".exr")
+MAPS = ("height", "normal", "anisotropy")
 
 app = typer.Typer(
     name="intaglio",
@@ -158,6 +160,62 @@ def chart(
     _finish(work, leave)
     if as_json:
         _print((out / "chart.json").read_text().rstrip())
+
+
+@app.command()
+def export(
+    scene: SceneFile,
+    out: Annotated[
+        Path,
+        typer.Option("-o", "--out", metavar="OUT", help="A solid: .glb, .stl, .ply or .obj. A map: .png or .exr."),
+    ],
+    index: Annotated[
+        int | None,
+        typer.Option("--object", metavar="N", min=0, help="Which object, from 0; else the only one with a pattern."),
+    ] = None,
+    kind: Annotated[str | None, typer.Option("--map", metavar="KIND", help=f"One of {', '.join(MAPS)}.")] = None,
+    size: Annotated[str | None, typer.Option(metavar="N", help="Texels of a map, N or WxH; 1024.")] = None,
+    thickness: Annotated[float | None, typer.Option(metavar="T", help="Of a rectangle's plate, world units.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print what was written as one object.")] = False,
+) -> None:
+    """Write an object's solid as a mesh, or a map of it."""
+    if kind is not None and kind not in MAPS:
+        _fail(UNREADABLE, f"--map: expected one of {', '.join(MAPS)}, found {kind!r}")
+    solid = out.suffix.lower() in SOLIDS
+    if not solid and out.suffix.lower() in MAP_FILES and kind is None:
+        _fail(UNREADABLE, f"--map: expected one of {', '.join(MAPS)}, as {out.name} is a picture, found none")
+    problem = outputs.fault(out, MAP_FILES if kind else (*SOLIDS, *MAP_FILES))
+    if problem:
+        _fail(UNREADABLE, problem)
+    if solid and size is not None:
+        _fail(UNREADABLE, "--size: expected a map, as a solid has no texels")
+    if not solid and thickness is not None:
+        _fail(UNREADABLE, "--thickness: expected a solid, as a map has none")
+    report, folder = _read(scene)
+    checked = _valid(report)
+    _meshes_exist(checked, folder)
+    from service import exports
+
+    try:
+        row = exports.chosen(checked, index)
+    except ValueError as error:
+        _fail(UNREADABLE, f"--object: {error}")
+    try:
+        texels = exports.SIZE if size is None else exports.size_of_text(size)
+    except ValueError as error:
+        _fail(UNREADABLE, f"--size: {error}")
+    order = exports.Order(kind or exports.SOLID, out.suffix.lower(), row, texels, thickness)
+
+    def work(stopped: Callable[[], bool]) -> tuple[bytes, dict[str, Any]]:
+        return exports.make(checked, order, meshes=lambda name: (folder / name).read_bytes(), cancelled=stopped)
+
+    data, told = _finish(work, lambda: _say("stopped: no file was written"))
+    try:
+        outputs.write(out, data)
+    except OSError as error:
+        _fail(WRONG, f"{out}: cannot be written: {error.strerror}")
+    if as_json:
+        _print_json({"out": str(out), **told, "warnings": [_finding(warning) for warning in report.warnings]})
 
 
 @app.command()

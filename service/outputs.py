@@ -5,15 +5,16 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 SUFFIXES = (".png", ".exr", ".npy")
 
 
-def fault(path: Path) -> str | None:
-    """Why no picture can be written to `path`, found out before the work begins; None where one can."""
-    if path.suffix.lower() not in SUFFIXES:
-        return f"{path}: expected a name that ends in {', '.join(SUFFIXES)}, found {path.suffix or 'no suffix'}"
+def fault(path: Path, suffixes: Sequence[str] = SUFFIXES) -> str | None:
+    """Why no file can be written to `path`, found out before the work begins; None where one can."""
+    if path.suffix.lower() not in suffixes:
+        return f"{path}: expected a name that ends in {', '.join(suffixes)}, found {path.suffix or 'no suffix'}"
     if path.is_dir():
         return f"{path}: expected a file, found a folder"
     if not path.parent.is_dir():

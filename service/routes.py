@@ -16,7 +16,7 @@ from fastapi.responses import JSONResponse
 
 import schema
 from renderer import compile as compiler
-from service import bodies, charts, overrides, pictures
+from service import bodies, charts, exports, overrides, pictures
 from service.charts import ChartWish
 from service.documents import CompiledPattern, Examples, Health, UploadedMesh, Validation
 from service.pictures import TYPES, Wish
@@ -210,6 +210,64 @@ async def chart(
     except ClientGone:
         return Response(status_code=499)
     return Response(data, media_type=wish.media, headers={"Vary": "Accept"})
+
+
+@router.post(
+    "/export",
+    openapi_extra=SCENE_BODY,
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The solid (GLB, STL, PLY, OBJ) or the map (PNG, EXR), by format or else by Accept.",
+            "content": dict.fromkeys(exports.TYPES.values(), _BINARY),
+        },
+        **problems(406, 413, 422, 503),
+    },
+)
+async def export(
+    request: Request,
+    number: Annotated[
+        int | None, Query(alias="object", description="which, from 0; else the only one with a pattern", ge=0, le=65535)
+    ] = None,
+    kind: Annotated[exports.Kind, Query(description="the solid, or which map")] = "solid",
+    format: Annotated[exports.Format | None, Query(description="instead of by Accept")] = None,
+    size: Annotated[str | None, Query(description="texels of a map, N or WxH; 1024", max_length=16)] = None,
+    thickness: Annotated[float | None, Query(description="of a rectangle's plate, world units", gt=0, le=1e6)] = None,
+) -> Response:
+    """Writes an object's solid, or a map of it, as a file."""
+    here = shop(request)
+    fitting = exports.suffixes(kind)
+    if format is None:
+        media = negotiate(request.headers.get("accept"), tuple(exports.TYPES[suffix] for suffix in fitting))
+        suffix = next(suffix for suffix in fitting if exports.TYPES[suffix] == media)
+    elif f".{format}" in fitting:
+        suffix = f".{format}"
+    else:
+        raise _parameter(f"format: expected {', '.join(fitting)}, as the kind is {kind}, found {format}")
+    try:
+        texels = exports.SIZE if size is None else exports.size_of_text(size)
+    except ValueError as error:
+        raise _parameter(f"size: {error}") from None
+    if texels[0] * texels[1] > here.settings.texel_limit:
+        raise _parameter(f"size: expected at most {here.settings.texel_limit} texels, found {texels[0] * texels[1]}")
+    text = await bodies.read(request, here.settings.body_limit)
+    scene = await anyio.to_thread.run_sync(
+        pictures.checked_for_service, text, exports.NO_PICTURE, here.settings, here.meshes, limiter=here.checks
+    )
+    try:
+        row = exports.chosen(scene, number)
+    except ValueError as error:
+        raise _parameter(f"object: {error}") from None
+    order = exports.Order(kind, suffix, row, texels, thickness, here.settings.triangle_limit)
+    try:
+        data = await here.renders.run(
+            partial(exports.serve, scene, order, here.settings, here.meshes, here.patterns), request
+        )
+    except ClientGone:
+        return Response(status_code=499)
+    name = f"object{row}{'' if kind == exports.SOLID else f'-{kind}'}{suffix}"
+    headers = {"Content-Disposition": f'attachment; filename="{name}"', "Vary": "Accept"}
+    return Response(data, media_type=exports.TYPES[suffix], headers=headers)
 
 
 @router.post("/patterns", openapi_extra=PATTERN_BODY, responses=problems(413, 422, 503))

@@ -28,6 +28,8 @@ class Settings:
     threads: int = max(1, (os.cpu_count() or 2) // 2)  # of one render
     pixel_limit: int = 1 << 24  # of one picture
     sample_limit: int = 1 << 30  # pixels times samples of one picture
+    triangle_limit: int = 1 << 19  # of an exported solid
+    texel_limit: int = 1 << 22  # of an exported map
     time_limit: float = 300.0  # of one render, from its start
     chart_pixels: int = 96 * 72  # of a chart's pictures
     chart_seconds: float = 20.0  # of a chart's renders

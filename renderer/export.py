@@ -1,0 +1,254 @@
+"""The solid of an object in the world, closed, as it leaves for a file.
+
+What is exported is what is rendered: the solid of the pattern (DESIGN 1.2, `mesh`) carried to the world by
+X = origin + axes (p, q, w), with sigma = sqrt(|dP/dp x dP/dq|) world units a pattern unit of height (DESIGN 1.1). A
+rectangle becomes a plate, cut square at its edge; grooves that come from outside cut it too.
+
+Files hold single precision. So vertices are rounded first, equal ones merged, and what rounding has flattened is
+taken out: faces without an area, and pairs of faces that have become one another's backs. Each of these leaves a
+closed surface closed, and what comes out is checked edge by edge.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from renderer import mesh
+from renderer.compile import CompiledScene
+from renderer.errors import Fault, RenderError
+from renderer.tables import BARE, RECTANGLE, Floats, Ints, Pattern
+
+LIMIT = 2_000_000
+"""The most triangles of a solid."""
+
+_FAR = 1000.0  # the largest coordinate, in sizes of the solid: single precision then holds 1/16,000 of its size
+_TINY = 2e-6  # edges this short, and parts this thin, as a share of the largest coordinate, are taken out
+_ROUNDS = 20  # of mending
+
+_DEEP = 4.0  # a plate's thickness where nothing else is said, in depths of its deepest groove
+_THICK = 0.05  # and its least, as a share of the shorter side
+
+
+class Body(NamedTuple):
+    """A closed solid in the world, outward triangles anticlockwise."""
+
+    vertices: NDArray[np.float32]  # (n, 3) no two equal
+    triangles: Ints  # (m, 3)
+    material: Ints  # (m,) rows of MATERIAL
+
+
+def body(scene: CompiledScene, row: int, *, thickness: float | None = None, limit: int = LIMIT) -> Body:
+    """The solid of the object `row`. `thickness` is a plate's, world units.
+
+    Raises RenderError where there is none, or where it has more than `limit` triangles.
+    """
+    obj = scene.objects[row]
+    pattern = scene.patterns[obj["pattern"]] if obj["pattern"] >= 0 else BARE
+    if obj["shape"] != RECTANGLE:
+        raise RenderError(
+            Fault(f"/objects/{row}/shape/type", "a rectangle, as its solid is asked for", "another shape")
+        )
+    try:
+        _few(pattern, obj["mapping"], limit)
+        vertices, triangles, slot = plate(obj, pattern, thickness, limit)
+        return closed(vertices, triangles, scene.slots[row][slot + 1], limit)
+    except ValueError as error:
+        raise RenderError(Fault(f"/objects/{row}", "an object with a closed solid", str(error))) from None
+
+
+def volume(solid: Body) -> float:
+    """What the surface encloses, cubic world units; positive where it faces outward."""
+    a, b, c = (solid.vertices[solid.triangles[:, k]].astype(np.float64) - solid.vertices[0] for k in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
+
+
+def _few(pattern: Pattern, mapping: Floats, limit: int) -> None:
+    """Refuse what would take long before its triangles are counted: a piece has a dozen at the least."""
+    copies = 1.0
+    for size, tile in zip(mapping[:2], pattern.grid.tile, strict=True):
+        copies *= 1.0 + float(size / tile) if tile > 0.0 else 1.0
+    if len(pattern.pieces) * copies > limit / 8:
+        raise ValueError(f"{int(len(pattern.pieces) * copies)} lines and arcs, more than {limit // 8}")
+
+
+def plate(obj: np.void, pattern: Pattern, thickness: float | None, limit: int) -> tuple[Floats, Ints, Ints]:
+    """A rectangle's solid: vertices (n, 3) in the world, triangles (m, 3), material slots (m,)."""
+    size, (su, sv, du, dv) = obj["size"], obj["mapping"]
+    sigma = float(np.sqrt(size[0] * size[1] / (su * sv)))
+    axes = obj["rotation"] * np.array([size[0] / su, size[1] / sv, sigma])
+    deepest = pattern.depth * sigma
+    if thickness is None:
+        thickness = max(_DEEP * deepest, _THICK * float(min(size)))
+    if not thickness > 1.001 * deepest:
+        raise ValueError(f"a thickness of {thickness:g} does not hold a groove of depth {deepest:g}")
+    # The solid that `build` makes ends at window + margin: so hand in a window that much too small.
+    margin = 0.01 * min(su, sv)
+    solid = mesh.build(
+        pattern, (du + margin, dv + margin, du + su - margin, dv + sv - margin), margin=margin, limit=limit
+    )
+    p, q, w = solid.vertices.T
+    low = w.min()
+    for values, first, last in ((p, du, du + su), (q, dv, dv + sv)):
+        values[np.abs(values - first) < 1e-9 * (last - first)] = first
+        values[np.abs(values - last) < 1e-9 * (last - first)] = last
+    w[w < 0.5 * (low - pattern.depth)] = -thickness / sigma
+    origin = obj["translation"] - obj["rotation"][:, :2] @ (0.5 * size)
+    return origin + (solid.vertices - [du, dv, 0.0]) @ axes.T, solid.triangles, solid.slot
+
+
+def closed(vertices: Floats, triangles: Ints, material: Ints, limit: int = LIMIT) -> Body:
+    """The same solid in single precision, still closed. Raises ValueError where it is not."""
+    far, size = float(np.abs(vertices).max()), float(np.ptp(vertices, axis=0).max())
+    if far > _FAR * size:
+        raise ValueError(f"a place at {far:g}, too far off for single precision to hold its size of {size:g}")
+    # The same steps everywhere, not finer ones near 0: readers merge points by an absolute distance.
+    step = 2.0 ** (math.ceil(math.log2(far)) - 23)
+    rounded = (np.round(vertices / step) * step).astype(np.float32)
+    points, index = np.unique(rounded + np.float32(0.0), axis=0, return_inverse=True)
+    faces = index.reshape(-1)[triangles].astype(np.int32)
+    tiny = _TINY * far
+    wrong = edges_of(faces)  # to begin with, any that is too short
+    for number in range(_ROUNDS):
+        short = wrong[np.linalg.norm(points[wrong[:, 0]] - points[wrong[:, 1]], axis=1) <= tiny]
+        if len(short):
+            faces = _merged(len(points), short)[faces]
+        elif number and not _unfolded(points, faces, wrong, tiny):
+            points, faces = _parted(points, faces, wrong, tiny)
+        kept = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
+        faces, material = _without_flaps(faces[kept], material[kept])
+        wrong = unpaired(faces)
+        if not len(wrong):
+            break
+    else:
+        raise ValueError("a surface finer than single precision can hold")
+    if len(faces) > limit:
+        raise ValueError(f"a solid of {len(faces)} triangles, more than {limit}")
+    used, faces = np.unique(faces, return_inverse=True)
+    return Body(points[used], faces.reshape(-1, 3).astype(np.int32), material)
+
+
+def edges_of(triangles: Ints) -> Ints:
+    """The directed edges (3 n, 2)."""
+    return np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+
+
+def unpaired(triangles: Ints) -> Ints:
+    """The edges (n, 2) that are not shared by exactly two triangles, running along them in opposite directions."""
+    edges = edges_of(triangles).astype(np.int64)
+    n = int(edges.max(initial=0)) + 1
+    there, count = np.unique(edges[:, 0] * n + edges[:, 1], return_counts=True)
+    back = np.unique(edges[:, 1] * n + edges[:, 0])
+    wrong = np.union1d(there[count != 1], np.setxor1d(there, back))
+    return np.stack([wrong // n, wrong % n], axis=1).astype(np.int32)
+
+
+def _merged(count: int, edges: Ints) -> Ints:
+    """For each of the points (count,) the one that takes its place when the edges (n, 2) shrink to points."""
+    place = np.arange(count, dtype=np.int32)
+    while True:  # as often as the longest chain of edges asks for
+        least = np.minimum(place[edges[:, 0]], place[edges[:, 1]])
+        before = place.copy()
+        np.minimum.at(place, edges.reshape(-1), np.repeat(least, 2))
+        place = place[place]
+        if np.array_equal(place, before):
+            return place
+
+
+def _unfolded(points: NDArray[np.float32], faces: Ints, wrong: Ints, tiny: float) -> bool:
+    """Flip, in place, the edges `wrong` along which the surface is folded back on itself, as at a wall that rounding
+    has left thinner than `tiny`: its two sides then become flaps. Whether there were any."""
+    found = False
+    for first, last in wrong[wrong[:, 0] < wrong[:, 1]].tolist():
+        here = np.flatnonzero((faces == first).any(axis=1) & (faces == last).any(axis=1))
+        tips = faces[here].sum(axis=1) - first - last
+        ahead = ((faces[here] == first) & (np.roll(faces[here], -1, axis=1) == last)).any(axis=1)
+        away = points[tips].astype(np.float64) - points[first]
+        along = points[last].astype(np.float64) - points[first]
+        away -= np.outer(away @ along / (along @ along), along)
+        long = np.linalg.norm(away, axis=1).clip(1e-300)
+        turned = away @ away.T > 0.0
+        apart = np.linalg.norm(np.cross(away[:, None], away), axis=2) / np.maximum(long[:, None], long)
+        for i, j in zip(*np.nonzero(turned & (apart <= tiny) & ahead[:, None] & ~ahead), strict=True):
+            x, y = tips[i], tips[j]  # (first, last, x) and (last, first, y)
+            faces[here[i]], faces[here[j]] = (last, x, y), (x, first, y)
+            found = True
+            break
+    return found
+
+
+def _parted(points: NDArray[np.float32], faces: Ints, wrong: Ints, gap: float) -> tuple[NDArray[np.float32], Ints]:
+    """Parts of the solid that touch along the edges `wrong`, set apart: there each part gets points of its own, moved
+    into it by `gap`."""
+    ends = np.zeros(len(points), np.bool_)
+    ends[wrong] = True
+    around: dict[int, list[int]] = {}
+    for face in np.flatnonzero(ends[faces].any(axis=1)).tolist():
+        for corner in faces[face].tolist():
+            if ends[corner]:
+                around.setdefault(corner, []).append(face)
+    parted = faces.copy()
+    made: list[Floats] = []
+    for corner, here in around.items():
+        parts = _parts(points.astype(np.float64), faces, corner, here)
+        for part in parts if len(parts) > 1 else []:
+            a, b, c = (points[faces[part, k]].astype(np.float64) for k in range(3))
+            outward = np.cross(b - a, c - a)
+            outward = (outward / np.linalg.norm(outward, axis=1, keepdims=True).clip(1e-300)).sum(axis=0)
+            parted[part] = np.where(faces[part] == corner, len(points) + len(made), parted[part])
+            made.append(points[corner] - gap * outward / max(float(np.linalg.norm(outward)), 1e-300))
+    if not made:
+        raise ValueError(f"a surface that is open, or touches itself, along {len(wrong)} edges")
+    return np.concatenate([points, np.array(made, np.float32)]), parted
+
+
+def _parts(points: Floats, faces: Ints, corner: int, here: list[int]) -> list[list[int]]:
+    """The faces `here` around a corner by the parts of the solid that touch in it: where more than two faces share an
+    edge, those belong together that have the solid between them."""
+    group = {face: face for face in here}
+
+    def root(face: int) -> int:
+        while group[face] != face:
+            face = group[face]
+        return face
+
+    sharing: dict[int, list[int]] = {}
+    for face in here:
+        for other in faces[face].tolist():
+            if other != corner:
+                sharing.setdefault(other, []).append(face)
+    for other, some in sharing.items():
+        along = points[other] - points[corner]
+        along /= np.linalg.norm(along)
+        a, b, c = (points[faces[some, k]] for k in range(3))
+        away = (a + b + c) - 3.0 * points[corner]
+        away -= (away @ along)[:, None] * along
+        for i, face in enumerate(some):
+            inward = np.cross(c[i] - a[i], b[i] - a[i])
+            angle = np.arctan2(away @ inward / np.linalg.norm(inward), away @ away[i] / np.linalg.norm(away[i]))
+            angle[i] = 0.0
+            angle = np.where(angle <= 0.0, angle + 2.0 * np.pi, angle)
+            group[root(face)] = root(some[int(angle.argmin())])
+    parts: dict[int, list[int]] = {}
+    for face in here:
+        parts.setdefault(root(face), []).append(face)
+    return list(parts.values())
+
+
+def _without_flaps(faces: Ints, material: Ints) -> tuple[Ints, Ints]:
+    """Without the pairs of triangles that are one another's backs."""
+    order = np.argsort(faces, axis=1)
+    odd = (np.take_along_axis(order, np.array([[1]]), 1) - order[:, :1]) % 3 != 1  # not a cyclic turn of the sorted one
+    _, group = np.unique(np.sort(faces, axis=1), axis=0, return_inverse=True)
+    sign = np.where(odd[:, 0], -1, 1)
+    balance = np.bincount(group.reshape(-1), sign)
+    # Of each group as many stay as its balance says, and of that sign.
+    stays = np.zeros(len(faces), np.bool_)
+    for facing in (1, -1):
+        rows = np.flatnonzero((sign == facing) & (np.sign(balance[group.reshape(-1)]) == facing))
+        _, first = np.unique(group.reshape(-1)[rows], return_index=True)
+        stays[rows[first]] = True
+    return faces[stays], material[stays]
