@@ -50,7 +50,7 @@ def body(scene: CompiledScene, row: int, *, thickness: float | None = None, limi
     pattern = scene.patterns[obj["pattern"]] if obj["pattern"] >= 0 else BARE
     if obj["shape"] != RECTANGLE:
         raise RenderError(
-            Fault(f"/objects/{row}/shape/type", "a rectangle, as its solid is asked for", "another shape")
+            Fault(f"/objects/{row}/shape/type", "a rectangle, as the solid is asked for", "a curved shape")
         )
     try:
         _few(pattern, obj["mapping"], limit)

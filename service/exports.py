@@ -26,7 +26,7 @@ Format = Literal["glb", "stl", "ply", "obj", "png", "exr"]
 SOLID = "solid"
 SIZE = (1024, 1024)
 TYPES = solids.TYPES | mapfiles.TYPES
-NO_PICTURE = Wish(suffix=".png", method="base", samples=None, resolution=(1, 1))
+NO_PICTURE = Wish(suffix=".png", method="base", samples=None, texels=None, resolution=(1, 1))
 
 
 def suffixes(kind: str) -> tuple[str, ...]:
