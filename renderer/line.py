@@ -8,7 +8,8 @@ Two changes to the papers, which `line` makes and `segment` does not (DESIGN 2.1
 - an interval's weight is the exact area of the pixel's square between its two lines, not its length on a segment that
   stands for the footprint (000, eq. 3).
 
-Where nothing stands above the plane, grooves do not mask each other, and each is a cross-section of its own.
+Where nothing stands above the plane, grooves do not mask each other, and each is a cross-section of its own; those
+that overlap share one.
 """
 
 from __future__ import annotations
@@ -422,7 +423,8 @@ def line(
         count = find_around(strict, pattern, view, eye_p, eye_q, work)
         if strict and count < 0:
             continue
-        if not near_groove(pattern, count, view, eye_p, eye_q, work):
+        # an eye among the ridges is not for a cross-section: it sees the plane
+        if eye_w <= LEVEL * pattern.height or not near_groove(pattern, count, view, eye_p, eye_q, work):
             count = 0
         tx, ty = direction(pattern, work.found, count, view)
         r = reach_along(pattern, view, eye_p, eye_q, tx, ty, work)
@@ -450,6 +452,10 @@ def line(
         first = 0
         while first < grooves:
             last = grooves if ridged else first + 1
+            finish = work.near[first].finish
+            while last < grooves and work.near[last].start < finish - 1e-9 * (finish - work.near[first].start):
+                finish = max(finish, work.near[last].finish)
+                last += 1
             n = lay(pattern, r, first, last, work)
             first = last
             plain -= weight(paper, view, bx, by, centre, half, work.b[0], work.b[n - 1])
@@ -464,7 +470,7 @@ def line(
             spans(work.b, work.x, work.low, work.high, n, foot_of(eye_d, eye_h))
             for i in range(n - 1):
                 low, high = work.low[i], work.high[i]
-                if high <= low or high <= r.low or low >= r.high:
+                if high <= low or high <= min(r.low, -half) or low >= max(r.high, half):
                     continue
                 part = weight(paper, view, bx, by, centre, half, low, high)
                 if part <= 0.0:
