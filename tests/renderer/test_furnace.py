@@ -74,7 +74,11 @@ def shares(radiance: Radiance, scene: Json, method: str, samples: int = 9) -> Fl
     found = radiance(scene | {"lights": [], "materials": LAMPS}, method=method, samples=samples)
     cover = radiance(scene | {"lights": [], "materials": LAMPS}, method="base")[..., 0]
     assert (found >= 0.0).all()
-    assert np.abs(found.sum(axis=2) - cover).max() < SINGLE
+    off = np.abs(found.sum(axis=2) - cover)
+    if method == "geometry":  # whose rays find the plate's rim by themselves
+        assert (found.sum(axis=2) < 1.0 + SINGLE).all()
+        off = off[cover == 1.0]
+    assert off.max() < SINGLE
     return found
 
 
