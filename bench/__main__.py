@@ -1,12 +1,8 @@
 """All measurements in one process run: a table on the terminal, bench/results.json, each run in bench/out/raw.json.
 
-    python -m bench [error] [speed] [memory] [startup]
+    python -m bench [papers] [speed] [memory] [startup]
 
-Takes about ten minutes on two cores, nearly all of them for the references.
-
-Accuracy is the root of the mean square of the difference in linear radiance, over all three channels. The reference
-is method `geometry`: the solid as a mesh, traced by Embree. A deterministic method has bias where a sampled one has
-variance, so both are given, and what the reference itself is worth.
+Takes about ten minutes on two cores, nearly all of them for the references of `papers`, which writes docs/PAPERS.md.
 """
 
 from __future__ import annotations
@@ -15,7 +11,7 @@ import json
 import sys
 from pathlib import Path
 
-from bench import error, memory, speed, startup
+from bench import memory, papers, speed, startup
 from bench.report import Line, table
 from renderer import pipeline
 from service.chart.machine import machine
@@ -23,7 +19,7 @@ from service.chart.machine import machine
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "bench" / "results.json"  # of a whole run
 OUT = ROOT / "bench" / "out"
-PARTS = {"error": error.measure, "speed": speed.measure, "memory": memory.measure, "startup": startup.measure}
+PARTS = {"papers": papers.measure, "speed": speed.measure, "memory": memory.measure, "startup": startup.measure}
 
 
 def main(names: list[str]) -> int:

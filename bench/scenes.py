@@ -24,11 +24,6 @@ def load(name: str) -> schema.Scene:
     return report.scene
 
 
-def seeded(scene: schema.Scene, seed: int) -> schema.Scene:
-    """The scene with another seed for its samples."""
-    return scene.model_copy(update={"render": scene.render.model_copy(update={"seed": seed})})
-
-
 def timed(
     scene: schema.Scene, method: str, resolution: tuple[int, int], samples: int | None = None,
     patterns: PatternCache | None = None,
@@ -40,12 +35,3 @@ def timed(
     if seconds > PATIENCE:
         print(f"  {method}, {samples} samples: {seconds:.0f} s", flush=True)
     return picture.radiance.astype(np.float64), seconds, picture
-
-
-def inside(scene: schema.Scene, resolution: tuple[int, int]) -> NDArray[np.bool_]:
-    """The pixels (H, W) that see nothing but an object, and whose neighbours do so too."""
-    seen = timed(scene, "base", resolution)[2].aovs["method"] != 0
-    padded = np.pad(seen, 1)  # what lies beyond the picture's edge is not known to be inside
-    height, width = seen.shape
-    shifted = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3)]
-    return np.asarray(np.all(shifted, axis=0))

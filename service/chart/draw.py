@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import os
 import textwrap
 import threading
 from collections.abc import Callable
@@ -14,7 +15,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from renderer import film
 from service.chart import measure
@@ -70,6 +71,8 @@ def chart(found: Results, title: str) -> bytes:
     text.text(0.56, 1, "\n".join(_left_out(found)), va="top", fontsize=8.5, transform=text.transAxes)
     width, height = found.plan.resolution
     state = "" if found.state.finished else "   (stopped: the same command goes on)"
+    if found.state.load > (os.cpu_count() or 1):
+        state += f"\nthe machine was busy (load {found.state.load:.1f}): the seconds are too many, all methods' alike"
     figure.suptitle(
         f"{title}, {width} x {height}; reference: {found.state.method or 'none'}, {reference.count} passes of "
         f"{reference.samples} samples{state}", fontsize=12,
@@ -183,7 +186,7 @@ def _axes(axes: Axes, vertical: str, horizontal: str) -> None:
     axes.tick_params(labelsize=8)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(numticks=12))
-        axis.set_major_formatter(LogFormatterSciNotation())
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
 
 
@@ -196,6 +199,11 @@ def _limits(axes: Axes) -> None:
     (left, low), (right, high) = data.min(axis=0), data.max(axis=0)
     axes.set_xlim(left / 1.6, right * 2.2)
     axes.set_ylim(low / 2.5, high * 2.5)
+    for axis, (first, last) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        if last < 30.0 * first:  # a power of ten alone would tell little
+            axis.set_minor_locator(LogLocator(subs=(2, 5)))
+            axis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_tick_params(which="minor", labelsize=7)
 
 
 def _beside(axes: Axes, y: float, text: str, above: bool = True) -> None:

@@ -5,6 +5,7 @@
 | state | complete, or stopped: the same command goes on |
 | machine | date, commit, processor, cores, load, versions |
 | resolution, pixels, threads, budget, seconds | of the run; errors are over the pixels `inside`, see `run.State` |
+| load | processes that ran beside it: above the number of cores, the seconds are too many |
 | seeds | the first of the methods' and of the reference's pictures: picture n has n more |
 | reference | method, passes, samples a pass, its `noise` (RMSE), `floor`, `smallest` measured: see `measure` |
 | rows | a setting each, with `cannot` (why), or `dear` (left out: seconds it would take), or numbers |
@@ -165,6 +166,7 @@ def document(found: Results) -> dict[str, Any]:
         "pixels": {"inside": int(state.inside.sum()) if state.inside is not None else 0,
                    "all": plan.resolution[0] * plan.resolution[1]},
         "threads": plan.threads,
+        "load": state.load,
         "budget": plan.budget,
         "seconds": state.spent,
         "seeds": {"methods": MINE, "reference": REFERENCE},
@@ -238,6 +240,8 @@ def words(one: Comparison) -> str:
     name = one.row.setting.name
     if one.times is None:
         return f"{one.rival} never gets to {name}'s error ({error})"
+    if not bound and 0.95 < one.times < 1.05:
+        return f"{name} is as fast as {one.rival} at equal error ({error})"
     faster = one.times if one.times >= 1.0 else 1.0 / one.times
     amount = f"{'at least ' if bound and one.times >= 1.0 else ''}{_round(faster)} times"
     how = {

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -27,11 +28,22 @@ from service.chart.settings import LADDERS, MINE, REFERENCE, REFERENCES, Setting
 # How often a setting is rendered at most, by the seconds that it takes.
 REPEATS = ((0.5, 7), (2.0, 5), (5.0, 3), (np.inf, 2))
 DEAR = 0.08  # a setting that takes more of the budget than this is left out
-ROUNDS = 0.5  # of the budget goes into rounds at most; the reference has the rest
-PASS = 1 / 20  # of the budget is what one pass of the reference may take
+ROUNDS = 0.4  # of the budget goes into rounds at most; the reference has the rest
+PASS = 1 / 10  # of the budget is what one pass of the reference may take
 PASSES = 4  # of the reference at least, however small the budget
 MANY = 1000  # passes at most, however small the picture
-SIZES = (16, 64, 256, 1024, 4096)  # samples of a pass: the more, the better for the same time, as they are stratified
+SIZES = (
+    16,
+    36,
+    64,
+    144,
+    256,
+    576,
+    1024,
+    2304,
+    4096,
+)  # samples of a pass: the more, the better for the same time, as they are stratified
+FORMAT = 2  # of what lies in the folder
 TRIAL = 16  # pixels: width of the pictures that load the kernels
 
 
@@ -54,7 +66,7 @@ class Plan:
         parts = {
             "scene": self.scene.model_dump(mode="json"), "resolution": self.resolution, "threads": self.threads,
             "settings": [setting.name for setting in self.settings], "kernels": CACHE.name,
-            "passes": self.passes, "samples": self.samples, "meshes": self._meshes(),
+            "format": FORMAT, "passes": self.passes, "samples": self.samples, "meshes": self._meshes(),
         }  # fmt: skip
         return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
@@ -75,6 +87,9 @@ class State:
     dear: dict[str, float] = field(default_factory=dict)
     inside: NDArray[np.bool_] | None = None  # (H, W) pixels that see an object, and whose neighbours do
     finished: bool = False
+    load: float = (
+        0.0  # processes that ran on the machine when a run began, at the worst: what its seconds suffered from
+    )
 
     @property
     def spent(self) -> float:
@@ -105,7 +120,7 @@ def opened(plan: Plan, folder: Path) -> tuple[State, bool]:
     if notes.exists():
         found = json.loads(notes.read_text())
         state.method, state.cannot, state.dear = found["method"], found["cannot"], found["dear"]
-        state.finished = found["finished"]
+        state.finished, state.load = found["finished"], found["load"]
     if (folder / "inside.npy").exists():
         state.inside = np.load(folder / "inside.npy")
     return state, False
@@ -125,6 +140,7 @@ class Run:
     def go(self) -> None:
         """To the budget's end. Cancelled where `stopped` says so, RenderError where nothing can be the reference."""
         self.state.finished = False
+        self.state.load = max(self.state.load, os.getloadavg()[0])
         self._prepare()
         for turn in range(max(times for _, times in REPEATS)):
             if self._round(turn) and not self._converged():
@@ -265,7 +281,8 @@ class Run:
 
     def _note(self) -> None:
         state = self.state
-        notes = {"method": state.method, "cannot": state.cannot, "dear": state.dear, "finished": state.finished}
+        names = ("method", "cannot", "dear", "finished", "load")
+        notes = {name: getattr(state, name) for name in names}
         outputs.write(self.folder / "notes.json", json.dumps(notes).encode())
 
 
