@@ -200,7 +200,7 @@ def _limits(axes: Axes) -> None:
     axes.set_xlim(left / 1.6, right * 2.2)
     axes.set_ylim(low / 2.5, high * 2.5)
     for axis, (first, last) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
-        if last < 30.0 * first:  # a power of ten alone would tell little
+        if last < 100.0 * first:  # a power of ten alone would tell little
             axis.set_minor_locator(LogLocator(subs=(2, 5)))
             axis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_tick_params(which="minor", labelsize=7)

@@ -32,16 +32,16 @@ class Record:
     squares: Floats = field(default_factory=lambda: np.zeros((0, 0, 3)))
     first: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0, 3), np.float32))
     seconds: list[float] = field(default_factory=list)  # of each frame
-    prepare: list[float] = field(default_factory=list)  # of meshes and textures, each
+    prepare: float = 0.0  # seconds of what is done once: patterns, meshes, textures
     wall: float = 0.0  # of all that was done for it
     bytes: int = 0  # of the representation
     samples: int = 0  # of a pass; for the reference
 
-    def add(self, picture: Picture, wall: float, keep: bool = True) -> None:
+    def add(self, picture: Picture, wall: float, prepare: float = 0.0, keep: bool = True) -> None:
         """One more render; keep: False where its picture is the same as the last one's."""
         total = picture.seconds["total"]
         self.seconds.append(total - sum(picture.seconds.get(stage, 0.0) for stage in APART))
-        self.prepare.append(sum(picture.seconds.get(stage, 0.0) for stage in APART[1:]))
+        self.prepare = max(self.prepare, prepare)
         self.wall += wall
         self.bytes = picture.solid_bytes or picture.pattern_bytes
         if not keep:
@@ -71,8 +71,8 @@ class Record:
         text = io.BytesIO()
         np.savez(
             text, mean=self.mean.astype(self.kind), squares=self.squares.astype(self.kind), first=self.first,
-            seconds=self.seconds, prepare=self.prepare,
-            whole=np.array([self.count, self.bytes, self.samples]), wall=self.wall,
+            seconds=self.seconds, whole=np.array([self.count, self.bytes, self.samples]),
+            spent=np.array([self.wall, self.prepare]),
         )  # fmt: skip
         outputs.write(path, text.getvalue())
 
@@ -83,11 +83,11 @@ def load(path: Path) -> Record | None:
         with np.load(path) as file:
             parts: Mapping[str, NDArray[np.float64]] = dict(file)
         count, size, samples = (int(number) for number in parts["whole"])
+        wall, prepare = (float(number) for number in parts["spent"])
         return Record(
             np.float64 if parts["mean"].dtype == np.float64 else np.float32,
             count, parts["mean"].astype(np.float64), parts["squares"].astype(np.float64),
-            parts["first"].astype(np.float32), list(map(float, parts["seconds"])), list(map(float, parts["prepare"])),
-            float(parts["wall"]), size, samples,
+            parts["first"].astype(np.float32), list(map(float, parts["seconds"])), prepare, wall, size, samples,
         )  # fmt: skip
     except (OSError, ValueError, KeyError):
         return None

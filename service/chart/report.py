@@ -198,7 +198,7 @@ def _row(row: Row, state: State) -> dict[str, Any]:
         key = "dear" if setting.name in state.dear else "cannot" if row.why_not.startswith("cannot") else "waits"
         return told | {key: row.why_not.removeprefix("cannot: ")}
     told |= {
-        "seconds": row.seconds, "runs": record.seconds, "prepare": float(np.median(record.prepare)),
+        "seconds": row.seconds, "runs": record.seconds, "prepare": record.prepare,
         "bytes": record.bytes, "pictures": record.count,
     }  # fmt: skip
     if row.errors is None:

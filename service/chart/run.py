@@ -21,6 +21,8 @@ import schema
 from renderer import CACHE, pipeline
 from renderer.compile import PatternCache
 from renderer.errors import Cancelled, RenderError
+from renderer.relief import Textures
+from renderer.trace import Truth
 from service import outputs
 from service.chart.record import Record, load
 from service.chart.settings import LADDERS, MINE, REFERENCE, REFERENCES, Setting
@@ -136,6 +138,8 @@ class Run:
         self.plan, self.folder, self.state = plan, folder, state
         self._stopped, self._progress = stopped, progress
         self._patterns = PatternCache()
+        self._solids: dict[str, Truth | Textures] = {}
+        self._prepared: dict[tuple[str, int | None], float] = {}  # seconds, by method and texels
 
     def go(self) -> None:
         """To the budget's end. Cancelled where `stopped` says so, RenderError where nothing can be the reference."""
@@ -187,7 +191,8 @@ class Run:
             except RenderError as error:
                 self.state.cannot[setting.name] = str(error)
                 continue
-            record.add(picture, time.perf_counter() - begin, keep=turn == 0 or sampled(setting))
+            wall, prepared = time.perf_counter() - begin, self._prepared[setting.method, setting.texels]
+            record.add(picture, wall, prepared, keep=turn == 0 or sampled(setting))
             record.save(self.folder / f"{setting.name}.npz")
             self.state.records[setting.name] = record
             rendered = True
@@ -221,14 +226,25 @@ class Run:
             and other.name in self.state.records and setting.samples and other.samples < setting.samples
         ]  # fmt: skip
         if not below or not setting.samples:
-            return 0.0
+            return self._texture(setting)
         below.sort(key=lambda one: one[0])
         samples, record = below[-1]
         rate = record.median / samples
         if len(below) > 1:  # what a frame takes without any samples is not multiplied
             fewer, other = below[-2]
             rate = max((record.median - other.median) / (samples - fewer), 0.0)
-        return record.prepare[-1] + record.median + rate * (setting.samples - samples)
+        return record.median + rate * (setting.samples - samples)
+
+    def _texture(self, setting: Setting) -> float:
+        """Seconds to make the texture that a setting is the first to use, from the last smaller one; 0: not known."""
+        smaller = [
+            (size, seconds) for (method, size), seconds in self._prepared.items()
+            if method == setting.method and size and setting.texels and size < setting.texels
+        ]  # fmt: skip
+        if not smaller or not setting.texels:
+            return 0.0
+        size, seconds = max(smaller)
+        return seconds * (setting.texels / size) ** 2
 
     def _pass(self) -> None:
         """One more pass of the reference."""
@@ -269,11 +285,15 @@ class Run:
     def _render(self, setting: Setting, seed: int, resolution: tuple[int, int]) -> pipeline.Picture:
         if self._stopped():
             raise Cancelled
-        return pipeline.render(
+        picture = pipeline.render(
             setting.scene(self.plan.scene, seed), method=setting.method, samples=setting.samples,
             threads=self.plan.threads, resolution=resolution, cancelled=self._stopped, meshes=self.plan.meshes,
-            patterns=self._patterns,
+            patterns=self._patterns, solids=self._solids,
         )  # fmt: skip
+        of = setting.method, setting.texels
+        spent = picture.seconds.get("compile", 0.0) + picture.seconds.get("solids", 0.0)
+        self._prepared[of] = max(self._prepared.get(of, 0.0), spent)  # all but the first find what that has made
+        return picture
 
     def _tell(self) -> None:
         if self._progress is not None:

@@ -48,14 +48,14 @@ def methods() -> list[str]:
 
 
 def ladder(names: Iterable[str], most: int = 1024) -> tuple[Setting, ...]:
-    """The settings of the methods, cheap before expensive; none with more than `most` samples or texels."""
+    """The settings of the methods, cheap before expensive; none with more than `most` samples, or texels for them."""
     found = []
     for name in names:
         texels = TEXELS if name == "relief" else (None,)
         found += [
             Setting(name, samples, size)
             for size in texels
-            if size is None or size <= 2 * most
+            if size is None or size <= 8 * most
             for samples in LADDERS.get(name, ()) or (None,)
             if samples is None or samples <= most
         ]

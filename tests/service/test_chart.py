@@ -15,7 +15,7 @@ from PIL import Image
 
 import schema
 from renderer import pipeline
-from renderer.errors import Cancelled
+from renderer.errors import Cancelled, Fault, RenderError
 from service.chart import make
 from service.chart.report import document, results
 from service.chart.run import Plan, opened
@@ -144,14 +144,23 @@ def test_files(scene: dict[str, Any], tmp_path: Path) -> None:
     assert {one["setting"] for one in told["equal"]} == {"line", "csg-4"}
 
 
-def test_a_method_that_cannot_is_listed_with_its_reason(scene: dict[str, Any], tmp_path: Path) -> None:
-    """geometry has no curved shapes: it says so, and the reference is csg."""
-    scene["objects"][0]["shape"] = {"type": "sphere", "radius": 1}
+def test_a_method_that_cannot_is_listed_with_its_reason(
+    scene: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """geometry refuses a solid: its row says so, and the reference is csg."""
+    render = pipeline.render
+
+    def refusing(scene: schema.Scene, **options: Any) -> pipeline.Picture:
+        if options["method"] == "geometry":
+            raise RenderError(Fault("/objects/0/pattern", "a pattern that can be meshed", "too many triangles"))
+        return render(scene, **options)
+
+    monkeypatch.setattr(pipeline, "render", refusing)
     plan = planned(scene, "line", "geometry")
     told = document(results(plan, make.measure(plan, tmp_path, never)))
     assert told["reference"]["method"] == "csg"
     rows = {row["method"]: row for row in told["rows"]}
-    assert "expected a rectangle" in rows["geometry"]["cannot"]
+    assert rows["geometry"]["cannot"].endswith("found too many triangles")
     assert rows["line"]["rmse"] is not None
 
 

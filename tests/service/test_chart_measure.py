@@ -24,7 +24,7 @@ TINT = float(np.mean(COLOUR**2))  # the mean square of what one number makes of 
 def record(images: list[NDArray[np.float64]], kind: type[np.float32] | type[np.float64] = np.float64) -> Record:
     made = Record(kind)
     for image in images:
-        picture = Picture(image.astype(np.float64), {}, {"total": 1.0, "compile": 0.25}, 7, {})
+        picture = Picture(image.astype(np.float64), {}, {"total": 1.0, "compile": 0.25, "solids": 0.0}, 7, {})
         made.add(picture, wall=2.0)
     return made
 
