@@ -56,7 +56,7 @@ def draw(
     from service.chart import make  # matplotlib is slow to load, and few requests need it
     from service.chart.report import results
 
-    pipeline.warm_up(geometry=True, textures=True)
+    pipeline.warm_up(geometry=True, textures=wish.methods is None or "relief" in wish.methods)
     seconds = min(wish.seconds or settings.chart_seconds, settings.chart_seconds)
     plan = make.plan(
         scene, budget=seconds, resolution=size(scene, wish, settings), names=wish.methods, threads=settings.threads,

@@ -165,6 +165,7 @@ def test_a_method_that_cannot_is_listed_with_its_reason(
 
 
 def test_service_gives_picture_and_numbers(scene: dict[str, Any]) -> None:
+    pipeline.warm_up(geometry=True)  # may compile for longer than the service gives a request
     with open_client(dataclasses.replace(SETTINGS, chart_seconds=1.0)) as client:
         picture = client.post("/api/chart?methods=line,csg", json=scene)
         assert picture.status_code == 200, picture.text
