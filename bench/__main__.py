@@ -1,6 +1,6 @@
 """All measurements in one process run: a table on the terminal, bench/results.json, each run in bench/out/raw.json.
 
-    python -m bench [papers] [speed] [memory] [startup]
+    python -m bench [truth] [papers] [speed] [memory] [startup]
 
 Takes about ten minutes on two cores, nearly all of them for the references of `papers`, which writes docs/PAPERS.md.
 """
@@ -11,7 +11,7 @@ import json
 import sys
 from pathlib import Path
 
-from bench import memory, papers, speed, startup
+from bench import memory, papers, speed, startup, truth
 from bench.report import Line, table
 from renderer import pipeline
 from service.chart.machine import machine
@@ -19,7 +19,13 @@ from service.chart.machine import machine
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "bench" / "results.json"  # of a whole run
 OUT = ROOT / "bench" / "out"
-PARTS = {"papers": papers.measure, "speed": speed.measure, "memory": memory.measure, "startup": startup.measure}
+PARTS = {
+    "truth": truth.measure,
+    "papers": papers.measure,
+    "speed": speed.measure,
+    "memory": memory.measure,
+    "startup": startup.measure,
+}
 
 
 def main(names: list[str]) -> int:

@@ -131,7 +131,7 @@ class Traced:
         origins, directions, lengths = np.empty((count, 3)), np.empty((count, 3)), np.empty(count)
         leave(
             which, np.ones(count, np.bool_) if own is None else own, self.body.origin, self.dual, self.normals,
-            self.middle, self.scale, far, towards, hits, origins, directions, lengths,
+            self.middle, self.scale, OFFSET, far, towards, hits, origins, directions, lengths,
         )  # fmt: skip
         found = self._scene.run(
             origins.astype(np.float32), directions.astype(np.float32), lengths.astype(np.float32), query="OCCLUDED"
@@ -519,7 +519,7 @@ def aim(point: bool, vector: Floats, hits: Hits, towards: Floats) -> Bools:
 @kernel
 def leave(
     which: NDArray[np.int64], own: Bools, place: Floats, dual: Floats, normals: Floats, middle: Floats, scale: float,
-    far: float, towards: Floats, hits: Hits, origins: Floats, directions: Floats, lengths: Floats,
+    offset: float, far: float, towards: Floats, hits: Hits, origins: Floats, directions: Floats, lengths: Floats,
 ) -> None:  # fmt: skip
     """Rays from hits, where a body is traced: unit directions and how far they go."""
     for j in range(len(which)):
@@ -531,7 +531,7 @@ def leave(
         off = 0.0
         row = hits.triangle[k]
         if own[j]:
-            off = -OFFSET if hits.back[k] else OFFSET
+            off = -offset if hits.back[k] else offset
         for c in range(3):
             origins[j, c] = (x[c] - middle[c]) * scale
             if off != 0.0:

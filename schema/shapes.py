@@ -18,7 +18,11 @@ class Rectangle(Model):
 
 
 class Sphere(Model):
-    """Centred; u = longitude / 360 degrees from +x towards +y, v from 0 at the -z pole to 1 at the +z pole."""
+    """Centred; u = longitude / 360 degrees from +x towards +y, v from 0 at the -z pole to 1 at the +z pole.
+
+    The pattern ends at u = 0 and 1, unless it tiles: a groove on the seam is drawn on both sides. Heights go along the
+    radius, by a unit that vanishes at the poles.
+    """
 
     type: Literal["sphere"] = Field(description="The kind of shape.")
     radius: Length = Field(description="The radius, world units.")
@@ -27,7 +31,8 @@ class Sphere(Model):
 class Cylinder(Model):
     """About the z axis, centred, closed by two bare caps that carry no pattern.
 
-    u = angle / 360 degrees, counter-clockwise from +x seen from +z; v from 0 at the bottom to 1 at the top.
+    u = angle / 360 degrees, counter-clockwise from +x seen from +z; v from 0 at the bottom to 1 at the top. The
+    pattern ends at u = 0 and 1, unless it tiles.
     """
 
     type: Literal["cylinder"] = Field(description="The kind of shape.")
@@ -36,7 +41,11 @@ class Cylinder(Model):
 
 
 class Mesh(Model):
-    """Triangles from a file, with its own uv. Smooth where the file has normals, else with flat facets."""
+    """Triangles from a file, with its own uv. Smooth where the file has normals, else with flat facets.
+
+    Heights go along the smooth normals. Their unit is each triangle's own; where the grooves are meshed, which must not
+    tear at the edges, the mean of those that meet at a corner.
+    """
 
     type: Literal["mesh"] = Field(description="The kind of shape.")
     file: FileName = Field(description="An OBJ, PLY or GLB file with uv, relative to the scene file.")
