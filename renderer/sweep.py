@@ -490,7 +490,7 @@ class Ribbon(NamedTuple):
     section: Section
     flat: float
     up: bool  # the flat line is above the polyline
-    widen: tuple[bool, bool]  # whether the flat side stands out by a hair, on the left and on the right
+    widen: tuple[int, int]  # how many hairs the flat side stands out by, on the left and on the right
 
     def triangles(self) -> int:
         """How many triangles the solid has."""
@@ -554,20 +554,19 @@ def ribbons(stroke: Stroke, *, top: float, bottom: float) -> dict[str, list[Ribb
             which = 1 if radius > 0.0 else 0
             if abs(float(whole.b[-which]) * stroke.scale.most) >= abs(radius) * (1.0 - 1e-9):
                 free[which] = False
-        widen = (free[0], free[1])
+        widen = (int(free[0]), int(free[1]))
         if len(inner):
             first, last = int(inner[0]), int(inner[-1]) + 1
             part = Section(whole.b[first : last + 1], whole.w[first : last + 1], whole.facet[first:last])
             if part.b[-1] > part.b[0]:
                 out["remove"].append(Ribbon(stroke, whole, longer, part, top, True, widen))
-        out["add"] += [
-            Ribbon(stroke, whole, rings, part, bottom, False, (False, False)) for part in _raised(whole, inner)
-        ]
+        out["add"] += [Ribbon(stroke, whole, rings, part, bottom, False, (0, 0)) for part in _raised(whole, inner)]
         ends = _groups(whole.b)
         single = np.array([first for first, _ in ends])
         level = Section(whole.b[single], np.zeros(len(single)), np.full(len(single) - 1, -1, np.int32))
         out["clear"].append(Ribbon(stroke, whole, rings, level, top, True, widen))
-        out["fill"].append(Ribbon(stroke, whole, rings, level, bottom, False, widen))
+        # Narrower, so that the groove's own removal leaves no fin of it standing at a wall.
+        out["fill"].append(Ribbon(stroke, whole, rings, level, bottom, False, (-widen[0], -widen[1])))
     return out
 
 
