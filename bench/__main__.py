@@ -1,8 +1,10 @@
 """All measurements in one process run: a table on the terminal, bench/results.json, each run in bench/out/raw.json.
 
     python -m bench [truth] [papers] [speed] [memory] [startup]
+    python -m bench stability
 
 Takes about ten minutes on two cores, nearly all of them for the references of `papers`, which writes docs/PAPERS.md.
+`stability` takes as long, is measured only where it is named, and writes docs/STABILITY.md's maps and tables.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ from pathlib import Path
 
 from bench import memory, papers, speed, startup, truth
 from bench.report import Line, table
+from bench.stability import page
 from renderer import pipeline
 from service.chart.machine import machine
 
@@ -26,13 +29,14 @@ PARTS = {
     "memory": memory.measure,
     "startup": startup.measure,
 }
+NAMED = {"stability": page.measure}  # measured only where they are named
 
 
 def main(names: list[str]) -> int:
     """Measure what is named, or all: 1 where something misses its goal."""
-    unknown = [name for name in names if name not in PARTS]
+    unknown = [name for name in names if name not in PARTS | NAMED]
     if unknown:
-        print(f"expected any of {', '.join(PARTS)}, found {', '.join(unknown)}", file=sys.stderr)
+        print(f"expected any of {', '.join(PARTS | NAMED)}, found {', '.join(unknown)}", file=sys.stderr)
         return 2
     about = machine()
     print(f"{about['processor']}, {about['cores']} cores; commit {about['commit']}", flush=True)
@@ -41,7 +45,7 @@ def main(names: list[str]) -> int:
     details: dict[str, object] = {}
     for name in names or PARTS:
         print(f"measuring {name} ...", flush=True)
-        found, detail = PARTS[name]()
+        found, detail = (PARTS | NAMED)[name]()
         lines += found
         details[name] = detail
     print(table(lines))
