@@ -34,7 +34,7 @@ from renderer.geometry.spans import (
 from renderer.kernel import leaf
 from renderer.tables import SCALE_CONSTANT, Pattern
 
-THIN = 1e-7  # solid thinner than this part of the pattern's height range is rounding, not matter
+THIN = 1e-7  # solid thinner than this part of the pattern's height range, or width, is rounding, not matter
 
 
 class Meeting(NamedTuple):
@@ -101,9 +101,12 @@ def meet(
     stretch: from above, or from below for a shadow, which asks only whether there is anything. w = -inf: nothing.
     """
     thin = THIN * (pattern.height + pattern.depth)
+    slope = math.hypot(gp, gq)
+    if slope * thin > THIN * pattern.width:  # a low ray, or a deep groove: as thin sideways
+        thin = THIN * pattern.width / slope
     stretches = 1
     if count < 0:
-        travel = math.hypot(gp, gq) * (high - low)
+        travel = slope * (high - low)
         stride = 2.0 * max(pattern.grid.cell[0], pattern.grid.cell[1]) + pattern.reach
         stretches = int(min(max(math.ceil(travel / stride), 1.0), 1e6))
     for k in range(stretches):

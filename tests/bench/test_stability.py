@@ -1,0 +1,89 @@
+"""A small version of the sweep: every factor at its ends, and the pairs that something failed at once.
+
+Against the truth in double precision `csg` draws the very same samples: it may differ by samples that fall within
+rounding of an edge. Solid thinner than 1e-7 of a groove's width counts as rounding (solid.THIN), and so far may an
+edge be off for a ray and for its shadow, at either side of a groove: of n samples in each of P footprints of F widths,
+4 * 1e-7 / F * n * P, and FLIPS more by chance.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from bench.stability import exact
+from bench.stability.scenes import PIXELS, Case, setting
+from bench.stability.sweep import of, picture
+
+SAMPLES = 256
+FLIPS = 2
+TOLERANCE = 0.002  # of the render settings
+
+STRAIGHT: list[dict[str, float]] = [
+    {},
+    {"view": 90},
+    {"view": 0.1},
+    {"light": 90},
+    {"light": 0.1},
+    {"footprint": 1e-4},
+    {"footprint": 100},
+    {"crossing": 90},
+    {"crossing": 0.01},
+    {"run": 1e-6},
+    {"run": 0},
+    {"aspect": 0.01},
+    {"aspect": 100},
+    {"apart": 1e-9},
+    {"apart": 0},
+    {"number": 1},
+    {"number": 10000},
+    {"view": 0.1, "footprint": 1e-4},
+    {"view": 0.1, "aspect": 10},
+    {"view": 0.1, "light": 0.1},
+    {"aspect": 100, "crossing": 3},
+    {"light": 0.1, "aspect": 100},
+    {"view": 0.1, "apart": 1e-9},
+]
+OTHERS: list[dict[str, float]] = [
+    {"radius": 1000},
+    {"radius": 3},
+    {"radius": 0.5},
+    {"radius": 0.1},
+    {"slope": 1e-3},
+    {"slope": 0.1},
+]
+
+
+def name(values: dict[str, float]) -> str:
+    return ", ".join(f"{key} {value:g}" for key, value in values.items()) or "base"
+
+
+@pytest.mark.parametrize("values", STRAIGHT, ids=name)
+def test_csg_is_exact_but_for_rounding(values: dict[str, float]) -> None:
+    case = of(values)
+    pixels = PIXELS if case.footprint <= 200 else (2, 2)
+    made = setting(case, pixels)
+    image, truth = picture(made, pixels, "csg", SAMPLES, 0), exact.truth(made, pixels, SAMPLES, 0)
+    count = SAMPLES * truth.size
+    assert np.abs(image - truth).sum() * SAMPLES <= FLIPS + 4e-7 / case.footprint * count + 1e-7 * count
+
+
+@pytest.mark.parametrize("aspect", [0.1, 0.5, 3.0])
+def test_the_truth_of_v_grooves_that_touch(aspect: float) -> None:
+    """In closed form, seen from above: walls of slope t have the normals (-t, 1) and (t, 1) over sqrt(1 + t^2), each
+    half of what is seen. Under a light (x, z) of slope s = z / x across the grooves the wall towards it is dark where
+    s < t, and the ridge's shadow leaves 2 s / (s + t) of the other wall lit: where the line w = -(b + h) s from the
+    ridge at -h lies above the wall w = -(h - b) t."""
+    t = 2.0 * aspect
+    made = setting(Case(view=90.0, light=20.0, run=0.5, aspect=aspect, footprint=200.0, number=200.0))
+    x, z = abs(made.light[0]), made.light[2]
+    s = z / x
+    if s < t:
+        expected = s / (s + t) * (t * x + z)
+    else:
+        expected = 0.5 * ((t * x + z) + (z - t * x))
+    image = exact.truth(made, PIXELS, 4096, 0, whole_period=True)
+    # one sample of 4,096 at each of four edges
+    assert np.abs(image - expected / math.sqrt(1.0 + t * t)).max() < 4.0 / 4096
