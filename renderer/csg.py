@@ -1,7 +1,8 @@
 """Method `csg`: rays against the spans of added and removed material (003), n stratified samples a footprint.
 
-Right for every case, however slow. `auto` sends it what no cheaper method takes, and then a footprint whose first few
-samples all fall on one facet, all lit alike, is left at those.
+Right for every case, however slow. `auto` sends it what no cheaper method takes, and then a footprint whose corners
+and first few samples all fall on one facet, all lit alike, is left at those: what one straight edge cuts off a
+footprint has one of its corners in it.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from renderer.tables import CSG, Camera, Lighting, Pattern
 
 SHARED = fixed(32)  # up to so many pieces are found once for all samples of a footprint
 LEVEL = 1e-6  # a light's slope to the plane is taken for at least this
-PROBE = 4  # `auto` begins with PROBE * PROBE samples
+PROBE = 4  # `auto` begins with the corners and PROBE * PROBE samples
 
 
 @kernel
@@ -85,10 +86,14 @@ def csg(
             taken = 0
             alike = True
             first_facet, first_found, first_lit = 0, 0, np.uint64(0)
-            for i in range(across * down):
-                state, ju = jitter(state)
-                state, jv = jitter(state)
-                u, v = (i % across + ju) / across, (i // across + jv) / down
+            corners = 4 if stage == 0 else 0  # looked at, not counted
+            for i in range(-corners, across * down):
+                if i < 0:
+                    u, v = float((-1 - i) & 1), float((-1 - i) >> 1)
+                else:
+                    state, ju = jitter(state)
+                    state, jv = jitter(state)
+                    u, v = (i % across + ju) / across, (i // across + jv) / down
                 p, q = on_plane(view, u, v)
                 gp, gq = (frame.eye[0] - p) / dw, (frame.eye[1] - q) / dw
                 m = meet(pattern, found, spans, shared, p, q, gp, gq, top, low - thin, NO)
@@ -137,13 +142,16 @@ def csg(
                         continue
                     lit |= np.uint64(1) << np.uint64(l)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
-                if taken == 0:
+                if i == -corners:
                     first_facet, first_found, first_lit = m.facet, item, lit
                 elif m.facet != first_facet or item != first_found or lit != first_lit:
                     alike = False
                     if stage == 0:
                         break
-                taken += 1
+                if i == -1:
+                    red = green = blue = 0.0
+                elif i >= 0:
+                    taken += 1
             if stage == 0 and alike:
                 break
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / taken, green / taken, blue / taken

@@ -15,7 +15,7 @@ import pytest
 
 from bench.stability import exact
 from bench.stability.scenes import PIXELS, Case, setting
-from bench.stability.sweep import of, picture
+from bench.stability.sweep import METHODS, Score, of, picture, run
 
 SAMPLES = 256
 FLIPS = 2
@@ -68,6 +68,32 @@ def test_csg_is_exact_but_for_rounding(values: dict[str, float]) -> None:
     image, truth = picture(made, pixels, "csg", SAMPLES, 0), exact.truth(made, pixels, SAMPLES, 0)
     count = SAMPLES * truth.size
     assert np.abs(image - truth).sum() * SAMPLES <= FLIPS + 4e-7 / case.footprint * count + 1e-7 * count
+
+
+@pytest.mark.parametrize("values", STRAIGHT + OTHERS, ids=name)
+def test_no_method_breaks(values: dict[str, float]) -> None:
+    """Finite and not negative, and `auto` as right as its tolerance, the truth's noise and its own samples allow."""
+    result = run(of(values), most_waves=20.0, samples=SAMPLES, truth_samples=1024)
+    assert not math.isnan(result.floor), result.truth
+    assert {method: score.failed for method, score in result.scores.items() if score.failed} == {}
+    assert set(METHODS) <= set(result.scores)
+
+    def allowed(other: Score) -> float:
+        return 1.5 * other.rms + result.floor + 0.5 * TOLERANCE
+
+    assert result.scores["auto"].rms <= allowed(result.scores["csg"])
+
+
+def test_what_fails_by_nature_is_not_chosen() -> None:
+    """Where `line` is far off, `auto` has not chosen it; where nothing crosses, bends or tapers, it has."""
+    for values in ({"crossing": 90.0}, {"apart": 0.1}, {"radius": 3.0}, {"slope": 0.1}):
+        result = run(of(values), samples=SAMPLES, truth_samples=1024)
+        assert result.scores["line"].rms > 0.01
+        assert result.scores["auto"].rms < 0.5 * result.scores["line"].rms
+    for values in ({"view": 0.1}, {"light": 0.1}, {"run": 0.0}, {"aspect": 100.0}, {"footprint": 1e-4}):
+        result = run(of(values), samples=SAMPLES, truth_samples=1024)
+        assert result.scores["auto"] == result.scores["line"]
+        assert result.scores["line"].rms <= result.floor + 0.5 * TOLERANCE
 
 
 @pytest.mark.parametrize("aspect", [0.1, 0.5, 3.0])
