@@ -140,7 +140,7 @@ def turn_lights(
 def find_around(strict: bool, pattern: Pattern, view: View, eye_p: float, eye_q: float, work: Work) -> int:
     """Find the pieces whose cross-sections may be seen through the footprint, or stand in its light: how many.
 
-    strict: -1 where paths cross in the footprint's bounds.
+    -1 where they are too many; strict: and where paths cross in the footprint's bounds.
     """
     lp, hp, lq, hq = 0.0, 0.0, 0.0, 0.0
     for k in range(4):
@@ -399,7 +399,8 @@ def line(
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance (n, 3) and the method each took.
 
-    mode: STRICT, LOOSE or PAPER. slots: rows of `materials` for the pattern's facets, the object's own first.
+    What has too many grooves in it is not its own, whatever the mode: STRICT, LOOSE or PAPER. slots: rows of
+    `materials` for the pattern's facets, the object's own first.
     """
     owned = work_for(pattern, len(lighting.lights))
     work, pattern, frames, lighting = borrow(owned), borrow(pattern), borrow(frames), borrow(lighting)
@@ -410,6 +411,9 @@ def line(
     for l in range(len(lights)):
         distant = distant and lights[l].kind == DIRECTIONAL
     ridged = pattern.height > 0.0
+    most = 0  # points of a cross-section
+    for profile in pattern.profiles:
+        most = max(most, profile.count)
     for index in chosen:
         footprint = footprints[index]
         frame = frames[footprint.frame]
@@ -421,7 +425,7 @@ def line(
             continue
         eye_p, eye_q = (frame.eye[0] - view.p) / eye_w, (frame.eye[1] - view.q) / eye_w
         count = find_around(strict, pattern, view, eye_p, eye_q, work)
-        if strict and count < 0:
+        if count < 0:
             continue
         # an eye among the ridges is not for a cross-section: it sees the plane
         if eye_w <= LEVEL * pattern.height or not near_groove(pattern, count, view, eye_p, eye_q, work):
@@ -433,7 +437,7 @@ def line(
             if count < 0:
                 continue
         grooves = pick(strict, pattern, view, r, count, work)
-        if grooves < 0:
+        if grooves < 0 or (ridged and grooves * (most + 1) + 2 > POINTS):
             continue
         method[index] = BASE if grooves == 0 else SEGMENT_METHOD if paper else LINE
 

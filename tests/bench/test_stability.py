@@ -96,6 +96,13 @@ def test_what_fails_by_nature_is_not_chosen() -> None:
         assert result.scores["line"].rms <= result.floor + 0.5 * TOLERANCE
 
 
+def test_more_grooves_than_line_holds_are_sampled() -> None:
+    """Not left out: `line` and `segment` once drew a plate without grooves, 0.4 too bright."""
+    result = run(Case(footprint=4000.0, number=4000.0), samples=SAMPLES, truth_samples=1024)
+    for method in ("line", "segment"):
+        assert result.scores[method].rms < 3.0 * result.scores["csg"].rms
+
+
 @pytest.mark.parametrize("aspect", [0.1, 0.5, 3.0])
 def test_the_truth_of_v_grooves_that_touch(aspect: float) -> None:
     """In closed form, seen from above: walls of slope t have the normals (-t, 1) and (t, 1) over sqrt(1 + t^2), each
