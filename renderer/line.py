@@ -41,6 +41,9 @@ NOT_MINE = 255  # in `method`: left to another method
 STRAIGHT = 0.02
 """How far, as a part of the footprint's width across the groove, a path may bend away from its tangent, and how much
 its scale may change, before it no longer counts as straight."""
+TURNED = 0.02
+"""The angle by which a path may turn, radians, between a footprint and what is seen through it or shades that: facets
+there are not turned as they are in the footprint's middle. The pixel's error is about a twentieth of it."""
 PARALLEL = 1e-6  # sine of the angle between grooves that count as parallel
 NEARLY_PARALLEL = 0.05  # ... in LOOSE and PAPER
 LEVEL = 1.001  # an eye or a light must stand this much higher than the highest ridge
@@ -287,6 +290,8 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
             if turn * r.length**2 > STRAIGHT * (r.high - r.low):
                 return -1
             if turn * (length - r.length) ** 2 > STRAIGHT * piece.half:
+                return -1
+            if abs(piece.curvature) * (length - r.length) > TURNED:
                 return -1
             if abs(slope) * max(length, pattern.depth, piece.half) > STRAIGHT * f:
                 return -1

@@ -53,6 +53,7 @@ OTHERS: list[dict[str, float]] = [
     {"radius": 0.1},
     {"slope": 1e-3},
     {"slope": 0.1},
+    {"view": 5, "radius": 10},
 ]
 
 
