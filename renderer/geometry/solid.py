@@ -34,6 +34,10 @@ from renderer.geometry.spans import (
 from renderer.kernel import leaf
 from renderer.tables import SCALE_CONSTANT, Pattern
 
+SEARCH = 1024
+"""Stretches of a shadow ray that are looked at: all that a pattern has, and of one that tiles for ever so many tiles
+that a ray which has met nothing there runs along free lanes."""
+
 THIN = 1e-7  # solid thinner than this part of the pattern's height range, or width, is rounding, not matter
 
 
@@ -109,7 +113,7 @@ def meet(
         travel = slope * (high - low)
         stride = 2.0 * max(pattern.grid.cell[0], pattern.grid.cell[1]) + pattern.reach
         stretches = int(min(max(math.ceil(travel / stride), 1.0), 1e6))
-    for k in range(stretches):
+    for k in range(min(stretches, SEARCH) if upwards else stretches):
         j = stretches - 1 - k if upwards else k
         a = high + (low - high) * j / stretches
         c = high + (low - high) * (j + 1) / stretches

@@ -284,3 +284,11 @@ def test_segment_is_the_papers(plate: Callable[..., Json], radiance: Radiance) -
     truth = radiance(scene, method="geometry", samples=400)
     off = {method: rms(radiance(scene, method=method) - truth) for method in ("base", "segment", "line")}
     assert off["line"] < 0.5 * off["segment"] < 0.25 * off["base"]
+
+
+@pytest.mark.parametrize("method", ["csg", "auto"])
+def test_light_along_a_plate_that_tiles(method: str, plate: Callable[..., Json], radiance: Radiance) -> None:
+    """Shadow rays that could run for ever come to an end: a billion tiles lie before this one leaves the ridges."""
+    grooves = [groove([[0.1, 0.1], [0.3, 0.35]], RIDGE)]
+    scene = plate(grooves, tile=[0.5, 0.5], lights=[sun(0, 1, -1e-9)], camera={"resolution": [4, 3]})
+    assert np.isfinite(radiance(scene, method=method, samples=4)).all()
