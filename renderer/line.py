@@ -26,7 +26,19 @@ from renderer.geometry.section import along, carried, foot_of, fraction_at, onto
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel, leaf
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world
-from renderer.tables import BASE, DIRECTIONAL, LINE, SEGMENT_METHOD, SMOOTH, Camera, Floats, Lighting, Pattern
+from renderer.tables import (
+    BASE,
+    DIRECTIONAL,
+    LINE,
+    SCALE_SINE,
+    SCALE_TABLE,
+    SEGMENT_METHOD,
+    SMOOTH,
+    Camera,
+    Floats,
+    Lighting,
+    Pattern,
+)
 
 CAPACITY = fixed(2048)  # pieces near a footprint; more are left to sampling
 POINTS = fixed(16384)  # points of one cross-section
@@ -240,6 +252,20 @@ def find_within(pattern: Pattern, view: View, r: Reach, work: Work) -> int:
 
 
 @leaf
+def steepest(pattern: Pattern, groove: np.void, piece: np.void, s: float, slope: float, length: float) -> float:
+    """At most so much does the scale change by arc length within `length` of s, where it changes by `slope`."""
+    if groove.scale_kind == SCALE_SINE:
+        turns = 2.0 * math.pi * abs(groove.scale_b) * (piece.t1 - piece.t0) / piece.length
+        most = abs(groove.scale_a) * turns * piece.size
+        return min(most, abs(slope) + most * turns * length)
+    if groove.scale_kind == SCALE_TABLE:
+        before = scale_at(pattern.scale_table, groove, piece, s - length)[1]
+        after = scale_at(pattern.scale_table, groove, piece, s + length)[1]
+        return max(abs(slope), abs(before), abs(after))
+    return abs(slope)
+
+
+@leaf
 def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work: Work) -> int:
     """Fill `work.near` with the grooves that run along T, from left to right: how many.
 
@@ -249,8 +275,9 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
     n = 0
     spread = max(-r.long_low, r.long_high) + max(-r.wide_low, r.wide_high)
     length = max(-r.long_low, r.long_high)
-    # Whose cross-sections must be known: where nothing stands above the plane, those inside the footprint alone.
-    low, high = (r.low, r.high) if pattern.height == 0.0 else (r.wide_low, r.wide_high)
+    # Whose cross-sections must be known: where nothing stands above the plane, those inside the footprint alone, if
+    # nothing overlaps them.
+    low, high = (r.low, r.high) if pattern.height == 0.0 and not strict else (r.wide_low, r.wide_high)
     for k in range(count):
         piece = pattern.pieces[found.piece[k]]
         groove = pattern.grooves[piece.groove]
@@ -293,7 +320,10 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
                 return -1
             if abs(piece.curvature) * (length - r.length) > TURNED:
                 return -1
-            if abs(slope) * max(length, pattern.depth, piece.half) > STRAIGHT * f:
+            if (
+                steepest(pattern, groove, piece, s, slope, length) * max(length, pattern.depth, piece.half)
+                > STRAIGHT * f
+            ):
                 return -1
         start = -sign * b + f * (profile.left if sign > 0.0 else -profile.right)
         finish = -sign * b + f * (profile.right if sign > 0.0 else -profile.left)
@@ -444,7 +474,7 @@ def line(
         grooves = pick(strict, pattern, view, r, count, work)
         if grooves < 0 or (ridged and grooves * (most + 1) + 2 > POINTS):
             continue
-        method[index] = BASE if grooves == 0 else SEGMENT_METHOD if paper else LINE
+        method[index] = BASE
 
         bx, by = -ty, tx
         centre = bx * view.p + by * view.q
@@ -462,6 +492,10 @@ def line(
         while first < grooves:
             last = grooves if ridged else first + 1
             finish = work.near[first].finish
+            if strict and not ridged and (finish <= r.low or work.near[first].start >= r.high):
+                first += 1  # beside the footprint, and nothing overlaps
+                continue
+            method[index] = SEGMENT_METHOD if paper else LINE
             while last < grooves and work.near[last].start < finish - 1e-9 * (finish - work.near[first].start):
                 finish = max(finish, work.near[last].finish)
                 last += 1

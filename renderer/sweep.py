@@ -36,7 +36,7 @@ HAIR = 1e-6
 """How far pieces that would only touch are made to overlap, as a share of the groove's half-width. Removed solids that
 only touch leave a wall of no thickness between them, which still casts shadows."""
 
-ARC = 2e-3  # how far chords may leave arcs, as a share of the groove's half-width; half of it where the scale varies
+ARC = 2e-3  # how far chords may leave arcs, as a share of the groove's half-width; a quarter where the scale varies
 
 _TURN = math.radians(3.0)  # the largest angle of an arc between two rings, whatever the tolerance
 _THIN = 1e-6  # the smallest scale, as a share of the groove's largest: keeps a groove that fades out a valid solid
@@ -181,7 +181,7 @@ def strokes_of(pattern: Pattern, index: int, tolerance: float | None) -> list[St
     hair = HAIR * half
     length, curvature = float(piece["length"]), float(piece["curvature"])
     exact = scale.kind == SCALE_CONSTANT  # then normals are those of the arc, not of its chords
-    tol = (ARC if exact else 0.5 * ARC) * half if tolerance is None else tolerance
+    tol = (ARC if exact else 0.25 * ARC) * half if tolerance is None else tolerance
     body = Stroke(
         x=float(piece["x"]),
         y=float(piece["y"]),

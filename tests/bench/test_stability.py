@@ -45,6 +45,7 @@ STRAIGHT: list[dict[str, float]] = [
     {"aspect": 100, "crossing": 3},
     {"light": 0.1, "aspect": 100},
     {"view": 0.1, "apart": 1e-9},
+    {"view": 30, "apart": 0.5},
 ]
 OTHERS: list[dict[str, float]] = [
     {"radius": 1000},
@@ -53,6 +54,7 @@ OTHERS: list[dict[str, float]] = [
     {"radius": 0.1},
     {"slope": 1e-3},
     {"slope": 0.1},
+    {"slope": 1},
     {"view": 5, "radius": 10},
 ]
 
