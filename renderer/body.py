@@ -137,7 +137,7 @@ def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Bo
     window = _window(obj)
     shape = int(obj["shape"])
     origin, axes = np.array(obj["translation"], np.float64), np.array(obj["rotation"], np.float64)
-    base = _NO_BASE._replace(shape=shape, size=np.array(obj["size"]), mapping=np.array(obj["mapping"]))
+    base = round_base(obj)
     if shape == MESH:
         origin, axes = np.zeros(3), np.eye(3)
         base = _mesh_base(row, obj, triangles, carries=pattern is not BARE)
@@ -150,7 +150,7 @@ def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Bo
                 np.full(count, -1, np.int32), np.zeros((count, 4)), np.arange(count, dtype=np.int32), base, 18 * count,
             )  # fmt: skip
     flat, slot, bend = _sheet(pattern, window)
-    coordinates, source, cell = _cut(base, flat)
+    coordinates, source, cell = cut(base, flat, CELL, LIMIT)
     if shape == MESH:
         coordinates[..., :2] = barycentric(base.pq[cell], coordinates[..., :2])[..., 1:]
     corners = carry(base, coordinates, cell)
@@ -180,8 +180,18 @@ def _sheet(pattern: Pattern, window: Floats) -> tuple[Floats, Ints, Floats]:
     return np.ascontiguousarray(corners[keep]), made.slot[keep], np.ascontiguousarray(made.bend[keep])
 
 
-def _cut(base: Base, flat: Floats) -> tuple[Floats, Ints, Ints]:
-    """The sheet's triangles cut by the base's cells: parts (k, 3, 3), the triangles they come from, their cells."""
+def round_base(obj: np.void) -> Base:
+    """The base of a sphere or a cylinder."""
+    return _NO_BASE._replace(
+        shape=int(obj["shape"]), size=np.array(obj["size"], np.float64), mapping=np.array(obj["mapping"], np.float64)
+    )
+
+
+def cut(base: Base, flat: Floats, step: float, limit: int) -> tuple[Floats, Ints, Ints]:
+    """The sheet's triangles cut by the base's cells: parts (k, 3, 3), the triangles they come from, their cells.
+
+    The cells of spheres and cylinders are `step` wide, radians. Raises ValueError where there are more than `limit`.
+    """
     su, sv, du, dv = base.mapping
     room = 4 * len(flat) + 1_000_000
     for _ in range(2):
@@ -196,12 +206,12 @@ def _cut(base: Base, flat: Floats) -> tuple[Floats, Ints, Ints]:
                 flat, base.pq, low, size, shape, *bins(flat, low, size, shape), parts, sources, cells
             )
         else:
-            columns = math.ceil(2.0 * math.pi / CELL)
-            rows = math.ceil(math.pi / CELL) if base.shape == SPHERE else 1
+            columns = math.ceil(2.0 * math.pi / step)
+            rows = math.ceil(math.pi / step) if base.shape == SPHERE else 1
             p, q = np.linspace(du, du + su, columns + 1), np.linspace(dv, dv + sv, rows + 1)
             made = cut_by_grid(flat, p, q, parts, sources, cells)
-        if made > LIMIT:
-            raise ValueError(f"the solid would need {made} triangles, more than {LIMIT}")
+        if made > limit:
+            raise ValueError(f"the solid would need {made} triangles, more than {limit}")
         if made <= room:
             break
         room = made

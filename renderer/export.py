@@ -2,7 +2,8 @@
 
 What is exported is what is rendered: the solid of the pattern (DESIGN 1.2, `mesh`) carried to the world by
 X = origin + axes (p, q, w), with sigma = sqrt(|dP/dp x dP/dq|) world units a pattern unit of height (DESIGN 1.1). A
-rectangle becomes a plate, cut square at its edge; grooves that come from outside cut it too.
+rectangle becomes a plate, cut square at its edge; grooves that come from outside cut it too. Spheres and cylinders are
+solid to their middle (`wrapped`).
 
 Files hold single precision. So vertices are rounded first, equal ones merged, and what rounding has flattened is
 taken out: faces without an area, and pairs of faces that have become one another's backs. Each of these leaves a
@@ -17,10 +18,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer import mesh
 from renderer.compile import CompiledScene
 from renderer.errors import Fault, RenderError
-from renderer.tables import BARE, RECTANGLE, Floats, Ints, Pattern
+from renderer.tables import BARE, MESH, RECTANGLE, Floats, Ints, Pattern
+from renderer.wrapped import slab, wrapped
 
 LIMIT = 2_000_000
 """The most triangles of a solid."""
@@ -48,13 +49,20 @@ def body(scene: CompiledScene, row: int, *, thickness: float | None = None, limi
     """
     obj = scene.objects[row]
     pattern = scene.patterns[obj["pattern"]] if obj["pattern"] >= 0 else BARE
-    if obj["shape"] != RECTANGLE:
+    if obj["shape"] == MESH:
         raise RenderError(
-            Fault(f"/objects/{row}/shape/type", "a rectangle, as the solid is asked for", "a curved shape")
+            Fault(
+                f"/objects/{row}/shape/type", "a rectangle, a sphere or a cylinder, as the solid is asked for", "a mesh"
+            )
         )
+    if obj["shape"] != RECTANGLE and thickness is not None:
+        raise RenderError(Fault(f"/objects/{row}/shape/type", "a rectangle, as a thickness is given", "a solid shape"))
     try:
         _few(pattern, obj["mapping"], limit)
-        vertices, triangles, slot = plate(obj, pattern, thickness, limit)
+        if obj["shape"] == RECTANGLE:
+            vertices, triangles, slot = plate(obj, pattern, thickness, limit)
+        else:
+            vertices, triangles, slot = wrapped(obj, pattern, limit)
         return closed(vertices, triangles, scene.slots[row][slot + 1], limit)
     except ValueError as error:
         raise RenderError(Fault(f"/objects/{row}", "an object with a closed solid", str(error))) from None
@@ -85,17 +93,9 @@ def plate(obj: np.void, pattern: Pattern, thickness: float | None, limit: int) -
         thickness = max(_DEEP * deepest, _THICK * float(min(size)))
     if not thickness > 1.001 * deepest:
         raise ValueError(f"a thickness of {thickness:g} does not hold a groove of depth {deepest:g}")
-    # The solid that `build` makes ends at window + margin: so hand in a window that much too small.
-    margin = 0.01 * min(su, sv)
-    solid = mesh.build(
-        pattern, (du + margin, dv + margin, du + su - margin, dv + sv - margin), margin=margin, limit=limit
-    )
-    p, q, w = solid.vertices.T
-    low = w.min()
-    for values, first, last in ((p, du, du + su), (q, dv, dv + sv)):
-        values[np.abs(values - first) < 1e-9 * (last - first)] = first
-        values[np.abs(values - last) < 1e-9 * (last - first)] = last
-    w[w < 0.5 * (low - pattern.depth)] = -thickness / sigma
+    solid = slab(pattern, (du, dv, du + su, dv + sv), limit)
+    w = solid.vertices[:, 2]
+    w[w < 0.5 * (w.min() - pattern.depth)] = -thickness / sigma
     origin = obj["translation"] - obj["rotation"][:, :2] @ (0.5 * size)
     return origin + (solid.vertices - [du, dv, 0.0]) @ axes.T, solid.triangles, solid.slot
 

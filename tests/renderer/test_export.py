@@ -157,7 +157,7 @@ def test_renders_as_the_scene_does(
     scene = plate(grooves, camera={"fov": 12})
     solid = body(compiled(scene), 0)
     carried = solid.vertices + np.array([1.0, 1.0, 0.0])  # p, q = x + 1, y + 1
-    build = mesh.build  # whose normals of arcs go with them; those of files are the chords'
+    build = mesh.build  # gives arcs their own normals; files have those of the chords
 
     def flat(*arguments: Any, **options: Any) -> mesh.SolidMesh:
         made = build(*arguments, **options)
