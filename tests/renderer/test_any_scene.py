@@ -1,16 +1,20 @@
-"""Whatever stands in a valid scene: numbers come out, and none below 0."""
+"""Whatever stands in a valid scene: numbers come out, none below 0, and none above what there is to reflect."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from renderer import body
 from renderer.errors import RenderError
 
-from .scenes import GROOVES, LIGHTS, ORIGINS, WHITE, Floats, Json
+from .scenes import GROOVES, LARGE_GROOVES, LIGHTS, ORIGINS, SINGLE, SKY, SUNS, WHITE, Floats, Json
 
 Plate = Callable[..., Json]
 Radiance = Callable[..., Floats]
@@ -31,7 +35,7 @@ CURVED = {
 def rendered(radiance: Radiance, scene: Json, method: str) -> Floats:
     """The picture; black where grooves that are too many, at one place or for a mesh, are refused."""
     try:
-        return radiance(scene, method=method, samples=4)
+        return radiance(scene, method=method, samples=4, texels=64)
     except RenderError as error:
         pointers = [fault.pointer for fault in error.faults]
     assert pointers == ["/patterns/cut/tile"] or (pointers == ["/objects/0/pattern"] and method == "geometry")
@@ -45,6 +49,19 @@ def placed(grooves: list[Json], tile: list[float] | None) -> list[Json]:
 
 def looking(origin: list[float]) -> Json:
     return {"origin": origin, "target": [0.01, 0.02, 0], "up": [0, 1, 0.01], "resolution": [4, 3]}
+
+
+def white(plate: Plate, grooves: list[Json], suns: list[Json], tile: list[float] | None = None, **parts: Any) -> Json:
+    return plate(grooves, tile, lights=[*suns, SKY], materials={"stone": WHITE, "other": WHITE}, **parts)
+
+
+def bounded(values: Floats, suns: int) -> bool:
+    """Whether a picture is of numbers, none below 0 and none above what so many suns and the sky may give.
+
+    White Lambert facets that face every sun, unshadowed, send back E / pi of each and all of the sky.
+    """
+    most = 1.0 + suns * np.array([3.0, 2.0, 1.0]) / math.pi
+    return bool(((values >= 0.0) & (values <= most * (1.0 + SINGLE))).all())
 
 
 @settings(max_examples=100, deadline=None, derandomize=True, print_blob=True)
@@ -66,3 +83,49 @@ def test_odd_scenes_are_pictures(
     values = rendered(radiance, scene, method)
     assert np.isfinite(values).all()
     assert (values >= 0.0).all()
+
+
+@settings(max_examples=100, deadline=None, derandomize=True, print_blob=True)
+@given(
+    grooves=st.lists(GROOVES, min_size=1, max_size=3), suns=st.lists(SUNS, max_size=3), origin=ORIGINS,
+    scale=MAPPINGS, tile=TILES, method=st.sampled_from(["auto", "line", "segment", "csg", "base"]),
+)  # fmt: skip
+def test_no_more_light_than_there_is(
+    radiance: Radiance, plate: Plate, grooves: list[Json], suns: list[Json], origin: list[float], scale: list[float],
+    tile: list[float] | None, method: str,
+) -> None:  # fmt: skip
+    """The mean over a footprint whose shares sum to one is no more than the most that a facet may send back."""
+    scene = white(plate, placed(grooves, tile), suns, tile, camera=looking(origin), mapping={"scale": scale})
+    assert bounded(rendered(radiance, scene, method), len(suns))
+
+
+@settings(max_examples=8, deadline=None, derandomize=True, print_blob=True)
+@given(
+    grooves=st.lists(LARGE_GROOVES, min_size=1, max_size=2), suns=st.lists(SUNS, max_size=2), origin=ORIGINS,
+    scale=st.sampled_from([[2, 2], [1, 3]]), shape=st.sampled_from(["rectangle", "rectangle", "sphere", "cylinder"]),
+)  # fmt: skip
+def test_meshes_of_odd_scenes(
+    radiance: Radiance, plate: Plate, grooves: list[Json], suns: list[Json], origin: list[float], scale: list[float],
+    shape: str,
+) -> None:  # fmt: skip
+    """`geometry` keeps to both as well, on coarse spheres and cylinders for the time."""
+    scene = white(plate, grooves, suns, camera=looking(origin), mapping={"scale": scale})
+    scene["objects"][0] |= CURVED.get(shape, {})
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(body, "CELL", 0.1)
+        assert bounded(rendered(radiance, scene, "geometry"), len(suns))
+
+
+@settings(max_examples=20, deadline=None, derandomize=True, print_blob=True)
+@given(
+    grooves=st.lists(GROOVES, min_size=1, max_size=2), suns=st.lists(SUNS, max_size=2), origin=ORIGINS,
+    scale=MAPPINGS, tile=TILES, shape=st.sampled_from(["rectangle", "sphere", "cylinder"]),
+)  # fmt: skip
+def test_textures_of_odd_scenes(
+    radiance: Radiance, plate: Plate, grooves: list[Json], suns: list[Json], origin: list[float], scale: list[float],
+    tile: list[float] | None, shape: str,
+) -> None:  # fmt: skip
+    """`relief` too."""
+    scene = white(plate, placed(grooves, tile), suns, tile, camera=looking(origin), mapping={"scale": scale})
+    scene["objects"][0] |= CURVED.get(shape, {})
+    assert bounded(rendered(radiance, scene, "relief"), len(suns))
