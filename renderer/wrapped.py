@@ -25,6 +25,7 @@ from renderer.tables import SPHERE, Floats, Ints, Pattern
 CELL = 0.018  # of the grid, radians: chords leave the surface by 4e-5 of its radius, a cell's diagonal by twice that
 
 _SNAP = 1e-9  # places this close, in windows, are one
+_LEAN = 2e-6  # and along the seam, where the solid's vertical walls lean by a hair, either way
 _CROSS = 1e-12  # and heights, in windows
 
 
@@ -137,12 +138,12 @@ def _seamed(parts: Floats, window: tuple[float, float, float, float]) -> tuple[F
     """The top's triangles (n, 3, 3) with the seam's wall among them, and which each comes from: -1, the wall."""
     p0, q0, p1, q1 = window
     points, faces = _welded(parts)
-    # Along a step, and where cells and facets meet, places differ by rounding: make them one.
+    # Along a step, and where cells and facets meet, places differ by a little: make them one.
     on = np.flatnonzero((points[:, 0] == p0) | (points[:, 0] == p1))
     at, back = np.unique(points[on, 1], return_inverse=True)
-    first = np.concatenate([[True], np.diff(at) > _SNAP * (q1 - q0)])
+    first = np.concatenate([[True], np.diff(at) > _LEAN * (q1 - q0)])
     at = at[first][np.cumsum(first) - 1]
-    at[at > q1 - _SNAP * (q1 - q0)] = q1
+    at[at > q1 - _LEAN * (q1 - q0)] = q1
     points[on, 1] = at[back.reshape(-1)]
 
     edges, which = _open(faces)
