@@ -117,7 +117,11 @@ def closed(vertices: Floats, triangles: Ints, material: Ints, limit: int = LIMIT
         if len(short):
             faces = _merged(len(points), short)[faces]
         elif number and not _unfolded(points, faces, wrong, tiny):
+            count = len(points)
             points, faces = _parted(points, faces, wrong, tiny)
+            if len(points) == count:
+                points, faces, source = _pinched(points, faces, wrong, tiny)
+                material = material[source]
         kept = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
         faces, material = _without_flaps(faces[kept], material[kept])
         wrong = unpaired(faces)
@@ -200,9 +204,49 @@ def _parted(points: NDArray[np.float32], faces: Ints, wrong: Ints, gap: float) -
             outward = (outward / np.linalg.norm(outward, axis=1, keepdims=True).clip(1e-300)).sum(axis=0)
             parted[part] = np.where(faces[part] == corner, len(points) + len(made), parted[part])
             made.append(points[corner] - gap * outward / max(float(np.linalg.norm(outward)), 1e-300))
+    return np.concatenate([points, np.array(made, np.float32).reshape(-1, 3)]), parted
+
+
+def _pinched(
+    points: NDArray[np.float32], faces: Ints, wrong: Ints, gap: float
+) -> tuple[NDArray[np.float32], Ints, Ints]:
+    """Edges `wrong` along which one part touches itself, halved, with a middle of its own, moved into the solid by
+    `gap`, for either pair of faces that have the solid between them. Also says which faces come from which."""
+    made: list[Floats] = []
+    cut: dict[int, tuple[int, int, int]] = {}  # by face, the ends of its edge and the middle
+    for first, last in wrong[wrong[:, 0] < wrong[:, 1]].tolist():
+        here = np.flatnonzero((faces == first).any(axis=1) & (faces == last).any(axis=1))
+        ahead = ((faces[here] == first) & (np.roll(faces[here], -1, axis=1) == last)).any(axis=1)
+        if len(here) != 4 or ahead.sum() != 2 or not cut.keys().isdisjoint(here.tolist()):
+            continue  # those whose faces are taken have their turn in the next round
+        a, b, c = (points[faces[here, k]].astype(np.float64) for k in range(3))
+        normal = np.cross(b - a, c - a)
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True).clip(1e-300)
+        along = points[last].astype(np.float64) - points[first]
+        along /= np.linalg.norm(along)
+        away = a + b + c - points[last] - 2.0 * points[first]
+        away -= np.outer(away @ along, along)
+        (i, other), back = np.flatnonzero(ahead), np.flatnonzero(~ahead)
+        angle = np.arctan2(away[back] @ -normal[i], away[back] @ away[i] / np.linalg.norm(away[i]).clip(1e-300))
+        near = int(np.where(angle <= 0.0, angle + 2.0 * np.pi, angle).argmin())
+        for pair in ((i, back[near]), (other, back[1 - near])):
+            outward = normal[list(pair)].sum(axis=0)
+            middle = 0.5 * (points[first].astype(np.float64) + points[last])
+            for k in pair:
+                ends = (first, last) if ahead[k] else (last, first)
+                cut[int(here[k])] = (*ends, len(points) + len(made))
+            made.append(middle - gap * outward / max(float(np.linalg.norm(outward)), 1e-300))
     if not made:
         raise ValueError(f"a surface that is open, or touches itself, along {len(wrong)} edges")
-    return np.concatenate([points, np.array(made, np.float32)]), parted
+    rows = np.array(list(cut), np.int32)
+    begin, end, middles = np.array(list(cut.values()), np.int32).T[:, :, None]
+    old = faces[rows]
+    one = np.where(old == end, middles, old)
+    two = np.where(old == begin, middles, old)
+    halved = faces.copy()
+    halved[rows] = one
+    source = np.concatenate([np.arange(len(faces)), rows]).astype(np.int32)
+    return np.concatenate([points, np.array(made, np.float32)]), np.concatenate([halved, two]), source
 
 
 def _parts(points: Floats, faces: Ints, corner: int, here: list[int]) -> list[list[int]]:

@@ -15,7 +15,7 @@ import schema
 from renderer import maps, mesh, pipeline
 from renderer.compile import CompiledScene, PatternCache, compile_scene
 from renderer.errors import RenderError
-from renderer.export import Body, body, unpaired, volume
+from renderer.export import Body, body, closed, unpaired, volume
 
 Json = dict[str, Any]
 Floats = NDArray[np.float64]
@@ -87,6 +87,29 @@ def test_closed(name: str, turned: bool, plate: Callable[..., Json]) -> None:
     assert read.is_winding_consistent
     assert read.volume == pytest.approx(volume(solid))
     assert volume(solid) > 0.0
+
+
+def test_an_edge_along_which_a_part_touches_itself() -> None:
+    """Two full layers of 2 x 2 cubes, and between them two that meet in an edge alone: ten cubes."""
+    filled = np.ones((2, 2, 3), np.bool_)
+    filled[[0, 1], [1, 0], 1] = False
+    around = np.pad(filled, 1)
+    corners: list[Floats] = []
+    for cube in np.argwhere(filled):
+        for axis in range(3):
+            for side in (-1, 1):
+                step = side * np.eye(3, dtype=np.int64)[axis]
+                if not around[tuple(cube + 1 + step)]:
+                    one, two = np.eye(3)[(axis + 1) % 3], np.eye(3)[(axis + 2) % 3]
+                    start = cube + np.maximum(step, 0)
+                    face = np.array([start, start + one, start + one + two, start + two])[::side]
+                    corners += [face[[0, 1, 2]], face[[0, 2, 3]]]
+    triangles = np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3)
+    solid = closed(np.concatenate(corners), triangles, np.zeros(len(corners), np.int32))
+    assert not len(unpaired(solid.triangles))
+    assert len(np.unique(solid.vertices, axis=0)) == len(solid.vertices)
+    assert volume(solid) == pytest.approx(10.0, abs=1e-4)
+    assert tracer(solid).is_watertight
 
 
 @pytest.mark.parametrize("turn", [[0, 0, 0], [10, 20, 30]])
