@@ -25,7 +25,7 @@ from renderer.geometry.query import Nearby, find, nearby, over_crossing
 from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, shifts, spans
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel, leaf
-from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world
+from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
 from renderer.tables import (
     BASE,
     DIRECTIONAL,
@@ -50,6 +50,7 @@ PAPER = 2  # `segment` for the whole image
 
 NOT_MINE = 255  # in `method`: left to another method
 
+GAUSS = 0.5 / math.sqrt(3.0)
 STRAIGHT = 0.02
 """How far, as a part of the footprint's width across the groove, a path may bend away from its tangent, and how much
 its scale may change, before it no longer counts as straight."""
@@ -112,7 +113,8 @@ class Reach(NamedTuple):
     eye_b: float
     low: float  # the footprint along B
     high: float
-    length: float  # the farthest it gets from its centre along T
+    length: float  # the farthest it gets from its centre along T, and how far it does on root mean square
+    spread: float
     wide_low: float  # ... with what is seen through it, or shades that
     wide_high: float
     long_low: float  # the same along T
@@ -211,7 +213,9 @@ def direction(pattern: Pattern, found: Nearby, count: int, view: View) -> tuple[
 
 
 @leaf
-def reach_along(pattern: Pattern, view: View, eye_p: float, eye_q: float, tx: float, ty: float, work: Work) -> Reach:
+def reach_along(
+    paper: bool, pattern: Pattern, view: View, eye_p: float, eye_q: float, tx: float, ty: float, work: Work
+) -> Reach:
     """How far what matters to the footprint lies, along T and B.
 
     Inside a groove a ray gets no deeper than the groove's width lets it, which bounds how far it goes on below.
@@ -225,6 +229,10 @@ def reach_along(pattern: Pattern, view: View, eye_p: float, eye_q: float, tx: fl
         long_low, long_high = min(long_low, on), max(long_high, on)
     eye_b, eye_t = eye_p * bx + eye_q * by, eye_p * tx + eye_q * ty
     length = max(-long_low, long_high)
+    p, q = on_plane(view, 1.0, 0.5)
+    p1, q1 = on_plane(view, 0.5, 1.0)
+    right, down = (p - view.p) * tx + (q - view.q) * ty, (p1 - view.p) * tx + (q1 - view.q) * ty
+    spread = 0.0 if paper else math.sqrt((right * right + down * down) / 3.0)
     room = 2.0 * pattern.width
     deep = pattern.depth if abs(eye_b) * pattern.depth <= room else room / abs(eye_b)
     wide_low, wide_high = shifts(pattern.height, deep, eye_b, 0.0, 0.0, 0.0)
@@ -237,7 +245,7 @@ def reach_along(pattern: Pattern, view: View, eye_p: float, eye_q: float, tx: fl
             wide_low, wide_high = shifts(pattern.height, below, eye_b, light_b, wide_low, wide_high)
             back, forth = shifts(pattern.height, below, eye_t, light_t, back, forth)
     wide_low, wide_high, long_low, long_high = low + wide_low, high + wide_high, long_low + back, long_high + forth
-    return Reach(tx, ty, eye_t, eye_b, low, high, length, wide_low, wide_high, long_low, long_high)
+    return Reach(tx, ty, eye_t, eye_b, low, high, length, spread, wide_low, wide_high, long_low, long_high)
 
 
 @leaf
@@ -325,8 +333,10 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
                 > STRAIGHT * f
             ):
                 return -1
-        start = -sign * b + f * (profile.left if sign > 0.0 else -profile.right)
-        finish = -sign * b + f * (profile.right if sign > 0.0 else -profile.left)
+        # A curved path runs beside its tangent: in the mean over the footprint so far.
+        axis = sign * (0.5 * piece.curvature * r.spread * r.spread - b)
+        start = axis + f * (profile.left if sign > 0.0 else -profile.right)
+        finish = axis + f * (profile.right if sign > 0.0 else -profile.left)
         if finish <= low or start >= high or finish <= start:
             continue
         at = n
@@ -338,7 +348,7 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
             at -= 1
         g = work.near[at]
         g.piece, g.start, g.finish = found.piece[k], start, finish
-        g.axis, g.turned, g.scale = -sign * b, sign, f
+        g.axis, g.turned, g.scale = axis, sign, f
         n += 1
     if strict:
         for k in range(1, n):
@@ -389,32 +399,48 @@ def tint_of(
     index: int, i: int, distant: bool, pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float,
     eye_h: float, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, work: Work,
 ) -> int:  # fmt: skip
-    """The row of `work.tint` with the colours of facet i, found once a footprint where all lights are far."""
-    row, slot = -1, 0
+    """The row of `work.tint` with the colours of facet i, found once a footprint where all lights are far.
+
+    Where they change along the groove they are the mean of two places, as far apart as the footprint is long on root
+    mean square. On curved paths the normal turns on the way to them, and to where the facet is seen through the plane.
+    """
+    row, slot, turn = -1, 0, 0.0
     if work.owner[i] >= 0:
         near = work.near[work.owner[i]]
-        where = pattern.grooves[pattern.pieces[near.piece].groove].slot + work.facet[i]
+        piece = pattern.pieces[near.piece]
+        where = pattern.grooves[piece.groove].slot + work.facet[i]
         slot = pattern.facet_slot[where] + 1
         row = 2 * where + (1 if near.turned > 0.0 else 0)
+        turn = near.turned * piece.curvature
     if distant and work.tinted[row] == index:
         return row
     work.tinted[row] = index
     lights = lighting.lights
     b0, w0, b1, w1 = work.b[i], work.w[i], work.b[i + 1], work.w[i + 1]
-    bx, by = -r.ty, r.tx
     # the middle of what is seen of it
     middle = 0.5 * (max(work.low[i], r.low) + min(work.high[i], r.high))
     u = min(max(fraction_at(middle, b0, w0, b1, w1, eye_d, frame.eye[2], eye_h), 0.0), 1.0)
     b, w = b0 + u * (b1 - b0), w0 + u * (w1 - w0)
-    t = r.eye_t * w
-    at = to_world(frame, view.p + b * bx + t * r.tx, view.q + b * by + t * r.ty, w)
-    n = normal_to_world(frame, (-(w1 - w0) * bx, -(w1 - w0) * by, b1 - b0))
-    e = (view.ex, view.ey, view.ez)
     material = materials[slots[slot]]
-    for l in range(len(lights)):
-        work.tint[row, l, 0], work.tint[row, l, 1], work.tint[row, l, 2] = lit_by(lights[l], material, n, e, at)
-    colour = ambient(material, lighting.sky, albedo, n, e)
-    work.tint[row, len(lights), 0], work.tint[row, len(lights), 1], work.tint[row, len(lights), 2] = colour
+    places = 2 if turn != 0.0 or not distant or material.metallic > 0.0 or material.f90 > 0.0 else 1
+    tint = work.tint[row]
+    tint[:] = 0.0
+    eye = to_world(frame, frame.eye[0], frame.eye[1], frame.eye[2])
+    for k in range(places):
+        side = 0.0 if places == 1 else 2.0 * k - 1.0
+        t = r.eye_t * w + side * r.spread
+        sine, cosine = math.sin(turn * t), math.cos(turn * t)
+        bx, by = -r.ty * cosine - r.tx * sine, r.tx * cosine - r.ty * sine
+        at = to_world(frame, view.p + b * bx + t * r.tx, view.q + b * by + t * r.ty, w)
+        n = normal_to_world(frame, (-(w1 - w0) * bx, -(w1 - w0) * by, b1 - b0))
+        e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
+        for l in range(len(lights)):
+            colour = lit_by(lights[l], material, n, e, at)
+            for c in range(3):
+                tint[l, c] += colour[c] / places
+        colour = ambient(material, lighting.sky, albedo, n, e)
+        for c in range(3):
+            tint[len(lights), c] += colour[c] / places
     return row
 
 
@@ -466,7 +492,7 @@ def line(
         if eye_w <= LEVEL * pattern.height or not near_groove(pattern, count, view, eye_p, eye_q, work):
             count = 0
         tx, ty = direction(pattern, work.found, count, view)
-        r = reach_along(pattern, view, eye_p, eye_q, tx, ty, work)
+        r = reach_along(paper, pattern, view, eye_p, eye_q, tx, ty, work)
         if strict and count > 0 and not pattern.parallel:
             count = find_within(pattern, view, r, work)
             if count < 0:
@@ -544,14 +570,21 @@ def line(
                     red, green, blue = red + lit * tint[l, 0], green + lit * tint[l, 1], blue + lit * tint[l, 2]
         if plain > 1e-12:
             n_world = normal_to_world(frame, (0.0, 0.0, 1.0))
-            e = (view.ex, view.ey, view.ez)
             material = materials[slots[0]]
-            at = to_world(frame, view.p, view.q, 0.0)
-            colour = ambient(material, lighting.sky, albedo, n_world, e)
-            red, green, blue = red + plain * colour[0], green + plain * colour[1], blue + plain * colour[2]
-            for l in range(len(lights)):
-                if work.light[l, 3] != 0.0:
-                    colour = lit_by(lights[l], material, n_world, e, at)
-                    red, green, blue = red + plain * colour[0], green + plain * colour[1], blue + plain * colour[2]
+            side = 2 if not distant or material.metallic > 0.0 or material.f90 > 0.0 else 1
+            eye = to_world(frame, frame.eye[0], frame.eye[1], eye_w)
+            part = plain / (side * side)
+            for k in range(side * side):  # at the places of Gauss in the pixel's square, where the light changes in it
+                p, q = view.p, view.q
+                if side == 2:
+                    p, q = on_plane(view, 0.5 + GAUSS * (2 * (k & 1) - 1), 0.5 + GAUSS * (2 * (k >> 1) - 1))
+                at = to_world(frame, p, q, 0.0)
+                e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
+                colour = ambient(material, lighting.sky, albedo, n_world, e)
+                red, green, blue = red + part * colour[0], green + part * colour[1], blue + part * colour[2]
+                for l in range(len(lights)):
+                    if work.light[l, 3] != 0.0:
+                        colour = lit_by(lights[l], material, n_world, e, at)
+                        red, green, blue = red + part * colour[0], green + part * colour[1], blue + part * colour[2]
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red, green, blue
     keep(owned)
