@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 import schema
 from bench.report import Line
-from bench.scenes import inside, load
+from bench.scenes import load
 from renderer import pipeline, trace
+from service.chart.run import inside
 
 SIZE = (320, 240)
 SAMPLES = 64
@@ -28,7 +29,7 @@ def measure() -> tuple[list[Line], dict[str, Any]]:
     usual = trace.OFFSET
     for name in ("parallel", "tiles", "single"):
         scene = load(name)
-        mask = inside(scene, SIZE)
+        mask = inside(pipeline.render(scene, method="base", resolution=SIZE))
         solids: dict[str, Any] = {}
 
         def picture(method: str, scene: schema.Scene = scene, solids: dict[str, Any] = solids) -> NDArray[np.float64]:

@@ -277,7 +277,8 @@ def steepest(pattern: Pattern, groove: np.void, piece: np.void, s: float, slope:
 def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work: Work) -> int:
     """Fill `work.near` with the grooves that run along T, from left to right: how many.
 
-    strict: -1 where anything in reach is not parallel, ends, bends or changes its scale too much, or overlaps.
+    -1 where ridges overlap; strict: and where anything in reach is not parallel, ends, bends or changes its scale too
+    much, or overlaps.
     """
     found = work.found
     n = 0
@@ -350,11 +351,26 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
         g.piece, g.start, g.finish = found.piece[k], start, finish
         g.axis, g.turned, g.scale = axis, sign, f
         n += 1
-    if strict:
+    if n > 1:
+        last = 0  # grooves that coincide are one
         for k in range(1, n):
-            g = work.near[k]
-            if g.start < work.near[k - 1].finish - 1e-9 * (g.finish - g.start):
-                return -1
+            g, h = work.near[k], work.near[last]
+            hair = 1e-9 * (g.finish - g.start)
+            same = g.scale == h.scale and g.turned == h.turned and abs(g.axis - h.axis) <= 1e-3 * hair
+            groove, other = (
+                pattern.grooves[pattern.pieces[g.piece].groove],
+                pattern.grooves[pattern.pieces[h.piece].groove],
+            )
+            if same and groove.profile == other.profile and groove.priority == other.priority:
+                for i in range(pattern.profiles[groove.profile].count - 1):
+                    same = same and pattern.facet_slot[groove.slot + i] == pattern.facet_slot[other.slot + i]
+                if same:
+                    continue
+            if (strict or pattern.height > 0.0) and g.start < h.finish - hair:
+                return -1  # ridges that overlap are not laid out one beside the other
+            last += 1
+            work.near[last] = g
+        n = last + 1
     return n
 
 

@@ -174,7 +174,7 @@ class Run:
             if not state.method:
                 raise faults[REFERENCES[0]]
         if state.inside is None:
-            state.inside = _inside(self._render(Setting("base"), MINE, self.plan.resolution))
+            state.inside = inside(self._render(Setting("base"), MINE, self.plan.resolution))
             np.save(self.folder / "inside.npy", state.inside)
         self._note()
 
@@ -311,7 +311,7 @@ def sampled(setting: Setting) -> bool:
     return bool(LADDERS.get(setting.method, ()))
 
 
-def _inside(picture: pipeline.Picture) -> NDArray[np.bool_]:
+def inside(picture: pipeline.Picture) -> NDArray[np.bool_]:
     """The pixels (H, W) that see nothing but an object, and whose neighbours do so too."""
     seen = picture.aovs["method"] != 0
     padded = np.pad(seen, 1)  # what lies beyond the picture's edge is not known to be inside
