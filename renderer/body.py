@@ -129,8 +129,7 @@ def _margin(
 
     sideways = [reach(eye, True), *(reach(light["vector"], light["kind"] == POINT) for light in lights)]
     size = max(window[2] - window[0], window[3] - window[1])
-    least = 4.0 * pattern.reach + 4.0 * tall
-    return float(max(least, min(max(sideways), _FAR * tall, 4.0 * size)))
+    return float(min(max(sideways), _FAR * tall, 4.0 * size) + 0.01 * size)
 
 
 def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Body:

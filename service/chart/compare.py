@@ -11,6 +11,7 @@ import numpy as np
 
 LAST = 3  # points of a curve that its law is taken from
 FLAT = -0.1  # an error that falls no faster than samples to this power has come to its floor
+FAR = 1000.0  # times the samples measured: what is said to be needed beyond that means nothing
 
 
 class Point(NamedTuple):
@@ -36,7 +37,7 @@ def equal(curve: Sequence[Point], rmse: float) -> Equal:
 
     Between two points, a power law through both. Beyond the last, one through the last LAST points, the seconds growing
     with the samples as between the last two. `already`: its cheapest setting is as good. `never`: its bias is larger,
-    or its error no longer falls.
+    its error no longer falls, or it would need FAR times the samples.
     """
     points = sorted(curve)
     slope = _slope(points[-LAST:])
@@ -48,10 +49,13 @@ def equal(curve: Sequence[Point], rmse: float) -> Equal:
             samples = before.samples * (after.samples / before.samples) ** share
             return Equal("measured", samples, before.seconds * (after.seconds / before.seconds) ** share, slope)
     last = points[-1]
-    if slope is None or slope > FLAT or last.bias > rmse:
+    now = _slope(points[-2:])
+    if slope is None or now is None or max(slope, now) > FLAT or last.bias > rmse:
         return Equal("never", None, None, slope)
     offset = math.log(last.rmse) - slope * math.log(last.samples)
-    samples = math.exp((math.log(rmse) - offset) / slope)
+    samples = math.exp(min((math.log(rmse) - offset) / slope, math.log(2.0 * FAR * last.samples)))
+    if samples > FAR * last.samples:
+        return Equal("never", None, None, slope)
     before = points[-2]
     rate = max((last.seconds - before.seconds) / (last.samples - before.samples), 0.0)
     return Equal("extrapolated", samples, last.seconds + rate * (samples - last.samples), slope)

@@ -7,7 +7,7 @@
 | resolution, pixels, threads, budget, seconds | of the run; errors are over the pixels `inside`, see `run.State` |
 | load | processes that ran beside it: above the number of cores, the seconds are too many |
 | seeds | the first of the methods' and of the reference's pictures: picture n has n more |
-| reference | method, passes, samples a pass, its `noise` (RMSE), `floor`, `smallest` measured: see `measure` |
+| reference | method, passes, samples a pass; `noise` (RMSE), `floor`, `smallest` as in `measure`; `bias`: `own_bias` |
 | rows | a setting each, with `cannot` (why), or `dear` (left out: seconds it would take), or numbers |
 | equal | what a rival needs for a method's smallest error: see `compare` |
 
@@ -180,12 +180,30 @@ def document(found: Results) -> dict[str, Any]:
             "smallest": _finite(measure.FIFTH * found.floor),
             "flip_floor": _finite(found.flip_floor),
             "start_offset": OFFSET if state.method == "geometry" else None,
-            "start_offset_effect": None,  # measured elsewhere
+            "bias": own_bias(plan, state),
         },
         "mrse_epsilon": measure.EPSILON,
         "rows": [_row(row, state) for row in found.rows],
         "equal": [_comparison(one) for one in found.comparisons],
     }  # fmt: skip
+
+
+def own_bias(plan: Plan, state: State) -> dict[str, float] | None:
+    """The bias of the reference `geometry`, of single precision and of where its shadow rays start, free of noise:
+    `csg` draws the very same samples for a seed and meets them in double precision, where grooved objects are flat.
+
+    None where no setting of both with as many samples has been measured, or a grooved object is curved.
+    """
+    curved = any(item.pattern is not None and item.shape.type != "rectangle" for item in plan.scene.objects)
+    if state.method != "geometry" or state.inside is None or curved:
+        return None
+    counts = [s.samples for s in plan.settings if s.method == "csg" and s.samples and s.name in state.records]
+    for samples in sorted(counts, reverse=True):
+        pair = [state.records.get(Setting(method, samples).name) for method in ("geometry", "csg")]
+        if pair[0] is not None and pair[1] is not None:
+            off = pair[0].first.astype(np.float64) - pair[1].first
+            return {"samples": samples, "mean": float(off[state.inside].mean())}
+    return None
 
 
 def _row(row: Row, state: State) -> dict[str, Any]:

@@ -89,9 +89,7 @@ class State:
     dear: dict[str, float] = field(default_factory=dict)
     inside: NDArray[np.bool_] | None = None  # (H, W) pixels that see an object, and whose neighbours do
     finished: bool = False
-    load: float = (
-        0.0  # processes that ran on the machine when a run began, at the worst: what its seconds suffered from
-    )
+    load: float = 0.0  # processes on the machine when a run began, at the worst: what its seconds suffered from
 
     @property
     def spent(self) -> float:
