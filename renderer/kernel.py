@@ -28,6 +28,11 @@ def leaf(function: F) -> F:
     return numba.njit(cache=False, nogil=True, error_model="numpy", forceinline=True)(function)  # type: ignore[no-any-return]
 
 
+def callee(function: F) -> F:
+    """A function that only kernels call, called: for what is rarely needed, and long. Its arrays must be borrowed."""
+    return numba.njit(cache=False, nogil=True, error_model="numpy")(function)  # type: ignore[no-any-return]
+
+
 def fixed(value: N) -> N:
     """A constant to hand to a function in a kernel. For a plain one numba would compile that function once more."""
     return cast(N, np.asarray(value)[()])

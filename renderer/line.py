@@ -10,6 +10,9 @@ Two changes to the papers, which `line` makes and `segment` does not (DESIGN 2.1
 
 Where nothing stands above the plane, grooves do not mask each other, and each is a cross-section of its own; those
 that overlap share one.
+
+A profile that overhangs is no cross-section for this: `auto` leaves its grooves to sampling, and as methods of the
+whole image `line` and `segment` leave them out, so that the plane is seen there.
 """
 
 from __future__ import annotations
@@ -307,7 +310,10 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
         s1 = s + max(cosine * r.long_low, cosine * r.long_high) + max(sine * r.wide_low, sine * r.wide_high)
         if piece.curvature == 0.0 and (s1 < -pattern.reach or s0 > piece.length + pattern.reach):
             continue
-        if abs(sine) > (PARALLEL if strict else NEARLY_PARALLEL):
+        overhangs = len(pattern.part_first) > 0 and (
+            pattern.part_first[groove.profile + 1] > pattern.part_first[groove.profile]
+        )
+        if overhangs or abs(sine) > (PARALLEL if strict else NEARLY_PARALLEL):
             if strict:
                 return -1
             continue

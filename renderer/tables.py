@@ -79,11 +79,24 @@ PROFILE_ROW = np.dtype(
     [
         ("start", "i4"), ("count", "i4"),  # points of the polyline, rows of Pattern.points
         ("inner_first", "i4"), ("inner_last", "i4"),  # internal facets: first <= facet < last (equal: none)
-        ("left", "f8"), ("right", "f8"),  # C_0.b and C_n.b
+        ("left", "f8"), ("right", "f8"),  # the least and the greatest b: C_0.b and C_n.b, but where it overhangs
         ("height", "f8"), ("depth", "f8"),  # the highest point above and the lowest below w = 0, both >= 0
     ]
 )  # fmt: skip
 """Facet i of a profile joins its points i and i + 1."""
+
+PART = np.dtype(
+    [
+        ("b0", "f8"), ("b1", "f8"),  # from b0 to b1 > b0
+        ("low0", "f8"), ("low1", "f8"),  # w of the lower side at b0 and at b1
+        ("high0", "f8"), ("high1", "f8"),  # w of the upper side there; inf: it has none
+        ("lower", "i4"), ("upper", "i4"),  # the facets on which these sides lie; -1: the plane below, or no upper side
+        ("removes", "i4"),  # 1: material is removed, 0: it is added
+    ]
+)  # fmt: skip
+"""A trapezoid of a profile that overhangs, pattern units at scale 1. Those that remove do not overlap one another, nor
+do those that add, nor either kind the other; their union is what the groove removes, and what it adds above w = 0.
+Their left and right sides lie on vertical facets, or on neighbours."""
 
 
 class Grid(NamedTuple):
@@ -115,6 +128,10 @@ class Pattern(NamedTuple):
     reach: float  # the farthest that a cross-section gets from its centre line, ends and mitres included
     parallel: bool  # all pieces are lines of one direction
     near: int  # no more pieces than this are looked at near one stretch of a ray
+    # Where profiles overhang (their b runs back: points of theirs are then no height field), what they make:
+    parts: NDArray[np.void] = np.zeros(0, PART)  # a profile at a time: those that remove, then those that add; by b0, w
+    part_first: Ints = np.zeros(0, np.int32)  # (k + 1,) where each profile's parts begin, none if it is a height field;
+    # (0,) where no profile overhangs
 
 
 BARE = Pattern(

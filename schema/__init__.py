@@ -5,6 +5,7 @@ from .document import json_schema
 from .errors import Problem, pointer
 from .lights import ConstantLight, DirectionalLight, EnvmapLight, Light, PointLight
 from .materials import Material
+from .overhang import internal, overhangs
 from .paths import CirclePath, Path, PolylinePath, SpiralPath, SvgPath
 from .patterns import MAX_PLACED, Groove, Pattern
 from .profiles import (
@@ -69,6 +70,8 @@ __all__ = [
     "VProfile",
     "check",
     "check_text",
+    "internal",
     "json_schema",
+    "overhangs",
     "pointer",
 ]

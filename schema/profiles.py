@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from . import overhang
 from .base import MAX_LENGTH, MIN_LENGTH, Array, Fault, Length, LengthOrZero, Model, Point2
 
 MAX_FACETS = 512
@@ -23,33 +24,41 @@ def _depth_faults(depth: float) -> Iterator[Fault]:
 
 
 class PolylineProfile(Model):
-    """Any cross-section that is a height field: one facet between each two points."""
+    """Any cross-section: one facet between each two points."""
 
     type: Literal["polyline"] = Field(description="The kind of profile.")
     points: Annotated[tuple[Point2, ...], Array] = Field(
         min_length=2,
         max_length=MAX_FACETS + 1,
-        description="Points [b, w] in pattern units. The first and the last have w = 0; b never decreases (equal "
-        "neighbours make a vertical wall).",
+        description="Points [b, w] in pattern units. The first and the last have w = 0; equal b of neighbours make a "
+        "vertical wall. Where b decreases the profile overhangs, as a dovetail does: such a polyline must not meet "
+        f"itself and has at most {overhang.MAX_FACETS + 1} points. From either end facets are external while it does "
+        "not descend, and internal in between. The groove removes what lies between the internal facets and the "
+        "vertical lines that rise from the first and the last internal point, undercuts included, and adds what the "
+        "polyline encloses with w = 0 above it. Its band and its half-widths reach to the least and the greatest b.",
     )
 
     def faults(self) -> Iterator[Fault]:
+        sound = True
         for index in (0, len(self.points) - 1):
             if self.points[index][1] != 0:
+                sound = False
                 yield Fault(
                     ("points", index, 1), "0, as a profile ends on the surface", f"{self.points[index][1]:.12g}"
                 )
         for index in range(1, len(self.points)):
             before, here = self.points[index - 1], self.points[index]
-            if here[0] < before[0]:
-                expected = f"a b of at least {before[0]:.12g} (overhanging profiles are not supported yet)"
-                yield Fault(("points", index, 0), expected, f"{here[0]:.12g}")
             if here == before:
+                sound = False
                 yield Fault(
                     ("points", index), "a point apart from the one before", f"[{here[0]:.12g}, {here[1]:.12g}] again"
                 )
+        if overhang.overhangs(self.points):
+            if sound:
+                yield from overhang.faults(self.points)
+            return
         width = self.points[-1][0] - self.points[0][0]
-        if 0 <= width < MIN_LENGTH:
+        if width < MIN_LENGTH:
             yield Fault(("points",), f"a profile at least {MIN_LENGTH:g} wide", f"a width of {width:g}")
 
     def polyline(self) -> Points:

@@ -19,11 +19,13 @@ from numpy.typing import NDArray
 
 import schema
 from renderer import grid, paths, repeats
+from renderer.compile.parts import Row, decompose
 from renderer.geometry.pieces import LEAST_SCALE
 from renderer.tables import (
     CORNER,
     FLAT,
     GROOVE,
+    PART,
     PIECE,
     PROFILE,
     PROFILE_ROW,
@@ -36,6 +38,7 @@ from renderer.tables import (
     Grid,
     Pattern,
 )
+from schema import internal as internal
 
 CURVE_TOLERANCE = 2e-5
 """How far arcs may leave a Bézier or a spiral, as a part of the path's extent."""
@@ -273,6 +276,8 @@ def dress(pattern: schema.Pattern, traced: Paths) -> Compiled:
         reach=float(np.max(far, initial=0.0)),
         parallel=lines and bool(np.all(np.abs(sine) < 1e-12)),
         near=_near(traced, float(np.max(far, initial=0.0))),
+        parts=np.array(profiles.parts, PART),
+        part_first=np.array(profiles.part_first if profiles.parts else [], np.int32),
     )
     return Compiled(tables_out, tuple(names))
 
@@ -309,12 +314,15 @@ class _Profiles:
     def __init__(self) -> None:
         self.rows: list[dict[str, float]] = []
         self.points: list[tuple[float, float]] = []
+        self.parts: list[Row] = []
+        self.part_first = [0]
         self._known: dict[tuple[tuple[float, float], ...], int] = {}
 
     def row(self, points: tuple[tuple[float, float], ...]) -> int:
         if points not in self._known:
             self._known[points] = len(self.rows)
             first, last = internal(points)
+            overhangs = schema.overhangs(points)
             heights = [w for _, w in points]
             self.rows.append(
                 {
@@ -322,22 +330,14 @@ class _Profiles:
                     "count": len(points),
                     "inner_first": first,
                     "inner_last": last,
-                    "left": points[0][0],
-                    "right": points[-1][0],
+                    "left": min(b for b, _ in points) if overhangs else points[0][0],
+                    "right": max(b for b, _ in points) if overhangs else points[-1][0],
                     "height": max(0.0, *heights),
                     "depth": max(0.0, *(-w for w in heights)),
                 }
             )
             self.points.extend(points)
+            if overhangs:
+                self.parts.extend(decompose(points, first, last))
+            self.part_first.append(len(self.parts))
         return self._known[points]
-
-
-def internal(points: Sequence[tuple[float, float]]) -> tuple[int, int]:
-    """The internal facets first <= i < last: what is left of the polyline when, from each end towards the centre, the
-    facets before the first descending one are taken off (DESIGN 1.2; 003, 5.3). Equal where nothing is left."""
-    first, last = 0, len(points) - 1
-    while first < len(points) - 1 and points[first + 1][1] >= points[first][1]:
-        first += 1
-    while last > 0 and points[last - 1][1] >= points[last][1]:
-        last -= 1
-    return (first, last) if first < last else (0, 0)

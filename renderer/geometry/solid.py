@@ -246,7 +246,7 @@ def normal_of(
         i = profile.start + m.facet
         run = pattern.points[i + 1, 0] - pattern.points[i, 0]
         rise = pattern.points[i + 1, 1] - pattern.points[i, 1]
-        if run > 0.0:
+        if run != 0.0:
             across, up = -rise / run, 1.0
             along = -slope * (pattern.points[i, 1] + across * pattern.points[i, 0])
         else:

@@ -4,6 +4,9 @@ A ray is a place on the base plane and a slope: X(w) = (p + w g_p, q + w g_q, w)
 that it always runs downwards and spans are intervals of w. Each piece of a path gives, for its body and for the caps
 of `profile` ends, the spans of the ray inside its band, under its added part, above its internal facets.
 
+Profiles that are height fields are walked along, facet by facet. Those that overhang come as trapezoids (PART), each
+of which holds the ray in one interval.
+
 Straight grooves of a constant or linear scale are exact. On arcs, and under other scales, the ray is followed in
 (s, b) by chords that leave it by at most CHORD of the groove's width.
 """
@@ -17,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.pieces import locate, point_at, row_before, scale_at, tangent_at
-from renderer.kernel import fixed, leaf
+from renderer.kernel import callee, fixed, leaf
 from renderer.tables import (
     CORNER,
     FLAT,
@@ -119,14 +122,99 @@ def wall(points: Floats, profile: np.void, side: int, level: float) -> int:
 
 
 @leaf
+def upright(points: Floats, first: int, last: int, b: float, level: float) -> int:
+    """The vertical facet of the points first .. last that is at b at a height (scale 1), or none of the facets."""
+    for i in range(first, last):
+        low, high = min(points[i, 1], points[i + 1, 1]), max(points[i, 1], points[i + 1, 1])
+        if points[i, 0] == b == points[i + 1, 0] and low <= level <= high:
+            return i - first
+    return SIDE
+
+
+@callee
+def part_events(
+    points: Floats, parts: NDArray[np.void], first: int, last: int, left: float, right: float, rank: int, e: Events,
+    n: int, owner: int, edge: int, w0: float, b0: float, f0: float, w1: float, b1: float, f1: float,
+) -> int:  # fmt: skip
+    """`walk` for a profile that overhangs, which has the points first .. last and reaches from `left` to `right`."""
+    enter, leave = 0.0, 1.0
+    enter_facet = leave_facet = edge
+    for side in range(2):
+        limit = left if side == 0 else right
+        sign = 1.0 if side == 0 else -1.0
+        d0, d1 = sign * (b0 - f0 * limit), sign * (b1 - f1 * limit)
+        if d0 < 0.0 and d1 < 0.0:
+            return n
+        t = d0 / (d0 - d1) if (d0 < 0.0) != (d1 < 0.0) else 0.0
+        level = (w0 + t * (w1 - w0)) / (f0 + t * (f1 - f0))
+        if d0 < 0.0:
+            if t > enter:
+                enter, enter_facet = t, upright(points, first, last, limit, level)
+        elif d1 < 0.0 and t < leave:
+            leave, leave_facet = t, upright(points, first, last, limit, level)
+    if enter >= leave:
+        return n
+    n = put(e, n, w0 + enter * (w1 - w0), 1, BAND, rank, enter_facet, owner)
+    n = put(e, n, w0 + leave * (w1 - w0), -1, BAND, rank, leave_facet, owner)
+    for k in range(len(parts)):
+        part = parts[k]
+        removes = part.removes == 1
+        t0, t1 = enter, leave
+        facet0, facet1 = enter_facet, leave_facet
+        for bound in range(4):
+            facet = SIDE
+            if bound < 2:
+                limit = part.b0 if bound == 0 else part.b1
+                sign = 1.0 if bound == 0 else -1.0
+                d0, d1 = sign * (b0 - f0 * limit), sign * (b1 - f1 * limit)
+            else:
+                facet = part.lower if bound == 2 else part.upper
+                if facet < 0:  # below the plane all is solid anyway
+                    continue
+                limit = points[first + facet, 0]
+                run, rise = (
+                    points[first + facet + 1, 0] - limit,
+                    points[first + facet + 1, 1] - points[first + facet, 1],
+                )
+                sign = 1.0 if (run > 0.0) == (bound == 2) else -1.0
+                d0 = sign * (run * (w0 - f0 * points[first + facet, 1]) - rise * (b0 - f0 * limit))
+                d1 = sign * (run * (w1 - f1 * points[first + facet, 1]) - rise * (b1 - f1 * limit))
+            if d0 < 0.0 and d1 < 0.0:
+                t1 = t0
+                break
+            if d0 < 0.0 or d1 < 0.0:
+                t = d0 / (d0 - d1)
+                starts = d0 < 0.0
+                if (starts and t > t0) or (not starts and t < t1):
+                    if bound < 2 and starts != removes:  # the others are no way into the solid
+                        level = (w0 + t * (w1 - w0)) / (f0 + t * (f1 - f0))
+                        facet = upright(points, first, last, limit, level)
+                    if starts:
+                        t0, facet0 = t, facet
+                    else:
+                        t1, facet1 = t, facet
+        if t0 < t1:
+            kind = REMOVE if removes else ADD
+            n = put(e, n, w0 + t0 * (w1 - w0), 1, kind, rank, facet0, owner)
+            n = put(e, n, w0 + t1 * (w1 - w0), -1, kind, rank, facet1 if removes else SIDE, owner)
+    return n
+
+
+@leaf
 def walk(
-    points: Floats, profile: np.void, rank: int, e: Events, n: int, owner: int, edge: int,
+    points: Floats, parts: NDArray[np.void], profile: np.void, rank: int, e: Events, n: int, owner: int, edge: int,
     w0: float, b0: float, f0: float, w1: float, b1: float, f1: float,
 ) -> int:  # fmt: skip
     """The events of a ray that falls from height w0 to w1 while its (b, scale) go linearly from (b0, f0) to (b1, f1).
 
-    `edge` says what the wall is where the ray enters or leaves other than along the groove.
+    `edge` says what the wall is where the ray enters or leaves other than along the groove. parts: those of a profile
+    that overhangs.
     """
+    if len(parts) > 0:
+        return part_events(
+            points, parts, profile.start, profile.start + profile.count - 1, profile.left, profile.right, rank, e, n,
+            owner, edge, w0, b0, f0, w1, b1, f1,
+        )  # fmt: skip
     first, last = profile.start, profile.start + profile.count - 1
     # where the ray is inside the band, the sides being linear in w
     enter, leave = 0.0, 1.0
@@ -220,7 +308,7 @@ def walk(
 
 @leaf
 def cut(
-    points: Floats, profile: np.void, rank: int, e: Events, n: int, owner: int,
+    points: Floats, parts: NDArray[np.void], profile: np.void, rank: int, e: Events, n: int, owner: int,
     w0: float, s0: float, b0: float, f0: float, w1: float, s1: float, b1: float, f1: float,
     begin_left: float, begin_right: float, length: float, end_left: float, end_right: float, caps: bool,
 ) -> int:  # fmt: skip
@@ -255,7 +343,7 @@ def cut(
                 high = max(low + (high - low) * at_low / (at_low - at_high), low)
         if low < high:
             n = walk(
-                points, profile, rank, e, n, owner, END,
+                points, parts, profile, rank, e, n, owner, END,
                 w0 + low * (w1 - w0), b0 + low * (b1 - b0), f0 + low * (f1 - f0),
                 w0 + high * (w1 - w0), b0 + high * (b1 - b0), f0 + high * (f1 - f0),
             )  # fmt: skip
@@ -288,6 +376,9 @@ def meet_piece(
     groove = pattern.grooves[piece.groove]
     profile = pattern.profiles[groove.profile]
     points, rank = pattern.points, groove.priority
+    parts = pattern.parts[0:0]
+    if len(pattern.part_first) > 0:
+        parts = pattern.parts[pattern.part_first[groove.profile] : pattern.part_first[groove.profile + 1]]
     most = groove.scale_max * piece.size
     left, right = profile.left * most, profile.right * most
     x0, y0 = p - dx + high * gp, q - dy + high * gq
@@ -333,7 +424,7 @@ def meet_piece(
                 fa, _ = scale_at(pattern.scale_table, groove, piece, sa)
                 fc, _ = scale_at(pattern.scale_table, groove, piece, sc)
                 n = cut(
-                    points, profile, rank, e, n, PARTS * found + BODY,
+                    points, parts, profile, rank, e, n, PARTS * found + BODY,
                     high + a * (low - high), sa + start_hair, b0 + a * (b1 - b0), fa,
                     high + c * (low - high), sc + start_hair, b0 + c * (b1 - b0), fc,
                     begin_left, begin_right, piece.length + start_hair + finish_hair, end_left, end_right, NO,
@@ -343,12 +434,13 @@ def meet_piece(
             if piece.start_end == PROFILE and min(s0, s1) < 0.0:
                 f, _ = scale_at(pattern.scale_table, groove, piece, 0.0)
                 n = meet_cap(
-                    points, profile, rank, e, n, PARTS * found + CAP_START, CAP_START, f, -s0, b0, -s1, b1, high, low
-                )
+                    points, parts, profile, rank, e, n, PARTS * found + CAP_START, CAP_START, f,
+                    -s0, b0, -s1, b1, high, low,
+                )  # fmt: skip
             if piece.finish_end == PROFILE and max(s0, s1) > piece.length:
                 f, _ = scale_at(pattern.scale_table, groove, piece, piece.length)
                 n = meet_cap(
-                    points, profile, rank, e, n, PARTS * found + CAP_FINISH, CAP_FINISH, f,
+                    points, parts, profile, rank, e, n, PARTS * found + CAP_FINISH, CAP_FINISH, f,
                     s0 - piece.length, -b0, s1 - piece.length, -b1, high, low,
                 )  # fmt: skip
         return n
@@ -422,7 +514,7 @@ def meet_piece(
                         u1 = min(u1, d0 / (d0 - d1))
                 if u0 < u1:
                     n = walk(
-                        points, profile, rank, e, n, PARTS * found + BODY, END,
+                        points, parts, profile, rank, e, n, PARTS * found + BODY, END,
                         high + (ta + u0 * (tc - ta)) * (low - high), b0 + u0 * (b1 - b0), f0 + u0 * (f1 - f0),
                         high + (ta + u1 * (tc - ta)) * (low - high), b0 + u1 * (b1 - b0), f0 + u1 * (f1 - f0),
                     )  # fmt: skip
@@ -442,13 +534,14 @@ def meet_piece(
                 continue
             # past its end the groove goes on straight, as far as it is read along b
             n = cut(
-                points, profile, rank, e, n, PARTS * found + (TAIL_START if end == 0 else TAIL_FINISH),
+                points, parts, profile, rank, e, n, PARTS * found + (TAIL_START if end == 0 else TAIL_FINISH),
                 high, s0 + hair, b0, f, low, s1 + hair, b1, f, 0.0, 0.0, 2.0 * hair, 1.0, -ratio, NO,
             )  # fmt: skip
             part = CAP_START if end == 0 else CAP_FINISH
             n = meet_cap(
-                points, profile, rank, e, n, PARTS * found + part, part, f, s0, -out * b0, s1, -out * b1, high, low
-            )
+                points, parts, profile, rank, e, n, PARTS * found + part, part, f,
+                s0, -out * b0, s1, -out * b1, high, low,
+            )  # fmt: skip
     return n
 
 
@@ -484,8 +577,8 @@ def next_stop(scale_table: Floats, groove: np.void, piece: np.void, s: float, fo
 
 @leaf
 def meet_cap(
-    points: Floats, profile: np.void, rank: int, e: Events, n: int, owner: int, part: int, f: float,
-    b0: float, s0: float, b1: float, s1: float, high: float, low: float,
+    points: Floats, parts: NDArray[np.void], profile: np.void, rank: int, e: Events, n: int, owner: int, part: int,
+    f: float, b0: float, s0: float, b1: float, s1: float, high: float, low: float,
 ) -> int:  # fmt: skip
     """The events of the cap of a `profile` end: the profile's right half along a line square to the path.
 
@@ -496,4 +589,6 @@ def meet_cap(
         return n
     # leaving by the finish, s > 0 is the path's right side; by the start, its left side
     begin, end = (-1.0, left) if part == CAP_FINISH else (-left, 1.0)
-    return cut(points, profile, rank, e, n, owner, high, s0, b0, f, low, s1, b1, f, begin, begin, 0.0, end, end, YES)
+    return cut(
+        points, parts, profile, rank, e, n, owner, high, s0, b0, f, low, s1, b1, f, begin, begin, 0.0, end, end, YES
+    )
