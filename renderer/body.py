@@ -139,7 +139,7 @@ def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Bo
     base = round_base(obj)
     if shape == MESH:
         origin, axes = np.zeros(3), np.eye(3)
-        base = _mesh_base(row, obj, triangles, carries=pattern is not BARE)
+        base = mesh_base(row, obj, triangles, carries=pattern is not BARE)
         window = np.array([*base.pq.min(axis=(0, 1)), *base.pq.max(axis=(0, 1))])
         if pattern is BARE:
             count = len(base.corners)
@@ -148,7 +148,7 @@ def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Bo
                 row, shape, origin, axes, window, base.corners, np.tile([0.0, 0.0, 1.0], (count, 1)), coordinates,
                 np.full(count, -1, np.int32), np.zeros((count, 4)), np.arange(count, dtype=np.int32), base, 18 * count,
             )  # fmt: skip
-    flat, slot, bend = _sheet(pattern, window)
+    flat, slot, bend = sheet(pattern, window)
     coordinates, source, cell = cut(base, flat, CELL, LIMIT)
     if shape == MESH:
         coordinates[..., :2] = barycentric(base.pq[cell], coordinates[..., :2])[..., 1:]
@@ -166,14 +166,14 @@ def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Bo
     )  # fmt: skip
 
 
-def _sheet(pattern: Pattern, window: Floats) -> tuple[Floats, Ints, Floats]:
+def sheet(pattern: Pattern, window: Floats, limit: int = mesh.LIMIT) -> tuple[Floats, Ints, Floats]:
     """The solid's surface over a window as triangles (n, 3, 3), with its sides, as grooves may end at a seam, but
-    without its bottom; slots and bends."""
+    without its bottom; slots and bends. `limit` is `mesh.build`'s."""
     p0, q0, p1, q1 = window
     if not len(pattern.pieces):
         square = np.array([[p0, q0, 0.0], [p1, q0, 0.0], [p1, q1, 0.0], [p0, q1, 0.0]])
         return square[[[0, 1, 2], [0, 2, 3]]], np.full(2, -1, np.int32), np.zeros((2, 4))
-    made = mesh.build(pattern, (p0, q0, p1, q1), margin=0.0)
+    made = mesh.build(pattern, (p0, q0, p1, q1), margin=0.0, limit=limit)
     corners = made.vertices[made.triangles]
     keep = (corners[:, :, 2] > corners[:, :, 2].min()).any(axis=1)
     return np.ascontiguousarray(corners[keep]), made.slot[keep], np.ascontiguousarray(made.bend[keep])
@@ -256,7 +256,7 @@ def facing(corners: Floats) -> Floats:
     return np.asarray(np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0), np.float64)
 
 
-def _mesh_base(row: int, obj: np.void, triangles: Triangles, carries: bool) -> Base:
+def mesh_base(row: int, obj: np.void, triangles: Triangles, carries: bool) -> Base:
     """The triangles of a mesh object, with the sigma of their corners."""
     mine = triangles.object == row
     corners, normals = triangles.corners[mine], triangles.normals[mine]
@@ -269,12 +269,17 @@ def _mesh_base(row: int, obj: np.void, triangles: Triangles, carries: bool) -> B
     sigma = np.sqrt(np.divide(area, plane, out=np.zeros_like(area), where=plane > 0.0))
     rise = np.zeros((len(corners), 3))
     if carries:
-        grid = np.round(corners.reshape(-1, 3) / (1e-9 * float(np.abs(corners).max())))
-        place = np.unique(grid, axis=0, return_inverse=True)[1].ravel()
+        place = places(corners).reshape(-1)
         weight = np.repeat(area, 3)
         total = np.bincount(place, weight * np.repeat(sigma, 3)) / np.bincount(place, weight)
         rise = total[place].reshape(-1, 3)
     return Base(MESH, np.zeros(2), mapping, corners, pq, normals, rise)
+
+
+def places(corners: Floats) -> Ints:
+    """Which corners (n, 3, 3) of triangles are at the same place: (n, 3) its number."""
+    grid = np.round(corners.reshape(-1, 3) / (1e-9 * float(np.abs(corners).max())))
+    return np.unique(grid, axis=0, return_inverse=True)[1].reshape(-1, 3).astype(np.int32)
 
 
 def _caps(base: Base) -> Floats:

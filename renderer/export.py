@@ -3,7 +3,7 @@
 What is exported is what is rendered: the solid of the pattern (DESIGN 1.2, `mesh`) carried to the world by
 X = origin + axes (p, q, w), with sigma = sqrt(|dP/dp x dP/dq|) world units a pattern unit of height (DESIGN 1.1). A
 rectangle becomes a plate, cut square at its edge; grooves that come from outside cut it too. Spheres and cylinders are
-solid to their middle (`wrapped`).
+solid to their middle (`wrapped`), and so is what a closed mesh encloses; an open one becomes a sheet (`draped`).
 
 Files hold single precision. So vertices are rounded first, equal ones merged, and what rounding has flattened is
 taken out: faces without an area, and pairs of faces that have become one another's backs. Each of these leaves a
@@ -18,7 +18,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.body import mesh_base, plate_axes
 from renderer.compile import CompiledScene
+from renderer.draped import Shape, draped, shape_of
 from renderer.errors import Fault, RenderError
 from renderer.tables import BARE, MESH, RECTANGLE, Floats, Ints, Pattern
 from renderer.wrapped import slab, wrapped
@@ -43,23 +45,26 @@ class Body(NamedTuple):
 
 
 def body(scene: CompiledScene, row: int, *, thickness: float | None = None, limit: int = LIMIT) -> Body:
-    """The solid of the object `row`. `thickness` is a plate's, world units.
+    """The solid of the object `row`. `thickness` is a plate's or an open mesh's, world units.
 
     Raises RenderError where there is none, or where it has more than `limit` triangles.
     """
     obj = scene.objects[row]
     pattern = scene.patterns[obj["pattern"]] if obj["pattern"] >= 0 else BARE
-    if obj["shape"] == MESH:
-        raise RenderError(
-            Fault(
-                f"/objects/{row}/shape/type", "a rectangle, a sphere or a cylinder, as the solid is asked for", "a mesh"
-            )
-        )
-    if obj["shape"] != RECTANGLE and thickness is not None:
-        raise RenderError(Fault(f"/objects/{row}/shape/type", "a rectangle, as a thickness is given", "a solid shape"))
     try:
-        _few(pattern, obj["mapping"], limit)
-        if obj["shape"] == RECTANGLE:
+        mesh = shape_of(mesh_base(row, obj, scene.triangles, carries=True)) if obj["shape"] == MESH else None
+        if thickness is not None and not (obj["shape"] == RECTANGLE if mesh is None else mesh.boundary.any()):
+            raise RenderError(
+                Fault(
+                    f"/objects/{row}/shape/type",
+                    "a rectangle or an open mesh, as a thickness is given",
+                    "a solid shape",
+                )
+            )
+        _few(pattern, obj["mapping"][:2] if mesh is None else np.ptp(mesh.base.pq, axis=(0, 1)), limit)
+        if mesh is not None:
+            vertices, triangles, slot = sheet(obj, pattern, mesh, thickness, limit)
+        elif obj["shape"] == RECTANGLE:
             vertices, triangles, slot = plate(obj, pattern, thickness, limit)
         else:
             vertices, triangles, slot = wrapped(obj, pattern, limit)
@@ -74,10 +79,10 @@ def volume(solid: Body) -> float:
     return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
 
 
-def _few(pattern: Pattern, mapping: Floats, limit: int) -> None:
+def _few(pattern: Pattern, window: Floats, limit: int) -> None:
     """Refuse what would take long before its triangles are counted: a piece has a dozen at the least."""
     copies = 1.0
-    for size, tile in zip(mapping[:2], pattern.grid.tile, strict=True):
+    for size, tile in zip(window, pattern.grid.tile, strict=True):
         copies *= 1.0 + float(size / tile) if tile > 0.0 else 1.0
     if len(pattern.pieces) * copies > limit / 8:
         raise ValueError(f"{int(len(pattern.pieces) * copies)} lines and arcs, more than {limit // 8}")
@@ -85,19 +90,35 @@ def _few(pattern: Pattern, mapping: Floats, limit: int) -> None:
 
 def plate(obj: np.void, pattern: Pattern, thickness: float | None, limit: int) -> tuple[Floats, Ints, Ints]:
     """A rectangle's solid: vertices (n, 3) in the world, triangles (m, 3), material slots (m,)."""
-    size, (su, sv, du, dv) = obj["size"], obj["mapping"]
-    sigma = float(np.sqrt(size[0] * size[1] / (su * sv)))
-    axes = obj["rotation"] * np.array([size[0] / su, size[1] / sv, sigma])
-    deepest = pattern.depth * sigma
-    if thickness is None:
-        thickness = max(_DEEP * deepest, _THICK * float(min(size)))
-    if not thickness > 1.001 * deepest:
-        raise ValueError(f"a thickness of {thickness:g} does not hold a groove of depth {deepest:g}")
+    origin, axes = plate_axes(obj)
+    sigma = float(np.linalg.norm(axes[:, 2]))
+    thickness = _thick(thickness, pattern.depth * sigma, float(min(obj["size"])))
+    su, sv, du, dv = obj["mapping"]
     solid = slab(pattern, (du, dv, du + su, dv + sv), limit)
     w = solid.vertices[:, 2]
     w[w < 0.5 * (w.min() - pattern.depth)] = -thickness / sigma
-    origin = obj["translation"] - obj["rotation"][:, :2] @ (0.5 * size)
-    return origin + (solid.vertices - [du, dv, 0.0]) @ axes.T, solid.triangles, solid.slot
+    return origin + solid.vertices @ axes.T, solid.triangles, solid.slot
+
+
+def sheet(
+    obj: np.void, pattern: Pattern, mesh: Shape, thickness: float | None, limit: int
+) -> tuple[Floats, Ints, Ints]:
+    """A mesh's solid, as `plate`'s. An open one is `thickness` thick, a closed one is solid."""
+    base = mesh.base
+    _, side, _ = sorted(np.ptp(base.corners.reshape(-1, 3) @ obj["rotation"], axis=0).tolist())
+    if mesh.boundary.any():
+        thickness = _thick(thickness, pattern.depth * float(base.rise.max()), side)
+    return draped(mesh, pattern, thickness or 0.0, limit)
+
+
+def _thick(thickness: float | None, deepest: float, side: float) -> float:
+    """The thickness of what is not solid: it holds the deepest groove, and is a part of the shorter side if none is
+    given."""
+    if thickness is None:
+        thickness = max(_DEEP * deepest, _THICK * side)
+    if not thickness > 1.001 * deepest:
+        raise ValueError(f"a thickness of {thickness:g} does not hold a groove of depth {deepest:g}")
+    return thickness
 
 
 def closed(vertices: Floats, triangles: Ints, material: Ints, limit: int = LIMIT) -> Body:
@@ -145,8 +166,8 @@ def unpaired(triangles: Ints) -> Ints:
     edges = edges_of(triangles).astype(np.int64)
     n = int(edges.max(initial=0)) + 1
     there, count = np.unique(edges[:, 0] * n + edges[:, 1], return_counts=True)
-    back = np.unique(edges[:, 1] * n + edges[:, 0])
-    wrong = np.union1d(there[count != 1], np.setxor1d(there, back))
+    back = np.unique(edges[:, 1] * n + edges[:, 0], return_counts=True)[0]  # sorts, as hashes of these are slow
+    wrong = np.union1d(there[count != 1], np.setxor1d(there, back, assume_unique=True))
     return np.stack([wrong // n, wrong % n], axis=1).astype(np.int32)
 
 

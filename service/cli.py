@@ -175,7 +175,9 @@ def export(
     ] = None,
     kind: Annotated[str | None, typer.Option("--map", metavar="KIND", help=f"One of {', '.join(MAPS)}.")] = None,
     size: Annotated[str | None, typer.Option(metavar="N", help="Texels of a map, N or WxH; 1024.")] = None,
-    thickness: Annotated[float | None, typer.Option(metavar="T", help="Of a rectangle's plate, world units.")] = None,
+    thickness: Annotated[
+        float | None, typer.Option(metavar="T", help="Of a rectangle or an open mesh, world units.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was written as one object.")] = False,
 ) -> None:
     """Write an object's solid as a mesh, or a map of it."""

@@ -42,7 +42,7 @@ class Order:
     suffix: str = ".glb"
     object: int = 0
     size: tuple[int, int] = SIZE  # texels of a map
-    thickness: float | None = None  # of a plate, world units
+    thickness: float | None = None  # of a plate or an open mesh, world units
     limit: int = export.LIMIT  # triangles of a solid
 
 

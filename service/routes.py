@@ -232,7 +232,9 @@ async def export(
     kind: Annotated[exports.Kind, Query(description="the solid, or which map")] = "solid",
     format: Annotated[exports.Format | None, Query(description="instead of by Accept")] = None,
     size: Annotated[str | None, Query(description="texels of a map, N or WxH; 1024", max_length=16)] = None,
-    thickness: Annotated[float | None, Query(description="of a rectangle's plate, world units", gt=0, le=1e6)] = None,
+    thickness: Annotated[
+        float | None, Query(description="of a rectangle or an open mesh, world units", gt=0, le=1e6)
+    ] = None,
 ) -> Response:
     """Writes an object's solid, or a map of it, as a file."""
     here = shop(request)

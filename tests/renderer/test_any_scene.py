@@ -42,7 +42,7 @@ def rendered(radiance: Radiance, scene: Json, method: str) -> Floats:
     return np.zeros((1, 1, 3))
 
 
-def placed(grooves: list[Json], _: list[float] | None) -> list[Json]:
+def placed(grooves: list[Json]) -> list[Json]:
     """Without their repeats: a hundred overlapping grooves are slow, and no news."""
     return [{k: v for k, v in groove.items() if k != "repeat"} for groove in grooves]
 
@@ -76,7 +76,7 @@ def test_odd_scenes_are_pictures(
     material: Json, other: Json, scale: list[float], tile: list[float] | None, shape: str, method: str,
 ) -> None:  # fmt: skip
     scene = plate(
-        placed(grooves * (2 if twice else 1), tile), tile, lights=lights, materials={"stone": material, "other": other},
+        placed(grooves * (2 if twice else 1)), tile, lights=lights, materials={"stone": material, "other": other},
         mapping={"scale": scale}, camera=looking(origin),
     )  # fmt: skip
     scene["objects"][0] |= CURVED.get(shape, {})
@@ -95,7 +95,7 @@ def test_no_more_light_than_there_is(
     tile: list[float] | None, method: str,
 ) -> None:  # fmt: skip
     """The mean over a footprint whose shares sum to one is no more than the most that a facet may send back."""
-    scene = white(plate, placed(grooves, tile), suns, tile, camera=looking(origin), mapping={"scale": scale})
+    scene = white(plate, placed(grooves), suns, tile, camera=looking(origin), mapping={"scale": scale})
     assert bounded(rendered(radiance, scene, method), len(suns))
 
 
@@ -109,8 +109,7 @@ def test_meshes_of_odd_scenes(
     shape: str,
 ) -> None:  # fmt: skip
     """`geometry` keeps to both as well; for the time without repeats, and on coarse spheres and cylinders."""
-    single = [{key: value for key, value in groove.items() if key != "repeat"} for groove in grooves]
-    scene = white(plate, single, suns, camera=looking(origin), mapping={"scale": scale})
+    scene = white(plate, placed(grooves), suns, camera=looking(origin), mapping={"scale": scale})
     scene["objects"][0] |= CURVED.get(shape, {})
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(body, "CELL", 0.1)
@@ -127,6 +126,6 @@ def test_textures_of_odd_scenes(
     tile: list[float] | None, shape: str,
 ) -> None:  # fmt: skip
     """`relief` too."""
-    scene = white(plate, placed(grooves, tile), suns, tile, camera=looking(origin), mapping={"scale": scale})
+    scene = white(plate, placed(grooves), suns, tile, camera=looking(origin), mapping={"scale": scale})
     scene["objects"][0] |= CURVED.get(shape, {})
     assert bounded(rendered(radiance, scene, "relief"), len(suns))

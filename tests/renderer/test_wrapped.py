@@ -185,7 +185,7 @@ def test_materials(compiled: Callable[..., CompiledScene], plate: Callable[..., 
     [
         (SPHERE, [groove([[1, 1], [2, 1]], {**V, "depth": 1.1})], {}, "a groove of depth 1.1 in a radius of 1"),
         (CYLINDER, CASES["crossing"], {"limit": 2000}, "more than 2000"),
-        (CYLINDER, [], {"thickness": 0.5}, "expected a rectangle, as a thickness is given"),
+        (CYLINDER, [], {"thickness": 0.5}, "expected a rectangle or an open mesh, as a thickness"),
     ],
 )
 def test_refused(

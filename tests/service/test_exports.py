@@ -182,3 +182,19 @@ def test_which_object(client: TestClient, carved: Json) -> None:
     assert "one of 0 (rectangle, cross), 2 (rectangle, cross), found none" in document["detail"]
     stl = client.post("/api/export?object=1&format=stl", json=carved).content
     assert read(stl, "stl").bounds[1, 0] == pytest.approx(9.5)
+
+
+def test_uploaded_mesh(client: TestClient, carved: Json) -> None:
+    """The plate as two triangles: the same solid."""
+    square = (
+        b"v -1 -.5 0\nv 1 -.5 0\nv 1 .5 0\nv -1 .5 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n"
+    )
+    plate = read(client.post("/api/export?format=stl&thickness=0.5", json=carved).content, "stl")
+    file = client.post("/api/meshes?name=square.obj", content=square).json()["file"]
+    carved["objects"][0]["shape"] = {"type": "mesh", "file": file}
+    mesh = read(client.post("/api/export?format=stl&thickness=0.5", json=carved).content, "stl")
+    assert mesh.is_watertight
+    np.testing.assert_allclose(mesh.bounds, plate.bounds, atol=1e-6)
+    assert mesh.volume == pytest.approx(plate.volume, abs=1e-5)
+    assert_problem(client.post("/api/export?format=stl&thickness=0.05", json=carved), 422, "/objects/0")
+    assert_problem(client.post("/api/export?kind=height&size=4", json=carved), 422, "/objects/0/shape/type")
