@@ -27,8 +27,8 @@ from numpy.typing import NDArray
 from renderer import body
 from renderer.tables import Floats, Ints, Pattern
 
-_SNAP = 1e-9  # weights of corners, places along an edge and heights in windows, that close, are the same
-_LEAN = 2e-6  # and places in windows where two tops may differ, as the solid's vertical walls lean by a hair
+_SNAP = 1e-9  # weights of corners, and heights in windows, that close are the same
+_LEAN = 2e-6  # and places along an edge, in windows, as the solid's vertical walls lean by a hair
 _NORMAL = 1e-6  # and parts of normals
 _SLIT = 1e-6  # of the solid's size: how wide what is left open by rounding may be
 _FOLD = 0.2  # the least cosine between a corner's normal and the floor's direction below it
@@ -46,7 +46,6 @@ class Shape(NamedTuple):
     boundary: NDArray[np.bool_]  # (n, 3) of edges without a second triangle
     rise: Ints  # (n, 3) of corners: a place's different G
     ribbon: Ints  # (n, 3) of edges: the same number where both ends' rises are
-    smooth: NDArray[np.bool_]  # (n, 3) of edges: both triangles have the same rises and uv
 
 
 def shape_of(base: body.Base) -> Shape:
@@ -76,12 +75,7 @@ def shape_of(base: body.Base) -> Shape:
     rows = np.concatenate([place[..., None], np.round(normals / _NORMAL)], axis=2)
     number = _numbers(rows.reshape(-1, 4)).reshape(-1, 3)
     ribbon = _numbers(_upward(place, number).reshape(-1, 2)).reshape(-1, 3)
-    sides = np.concatenate([*np.moveaxis(_upward(place, pq), 2, 0), ribbon[..., None]], axis=2)
-    first = np.zeros((edge.max() + 1, 5))
-    first[edge] = sides
-    differs = np.zeros(len(first), np.bool_)
-    differs[edge[(np.abs(sides - first[edge]) > _SNAP * np.ptp(pq)).any(axis=2)]] = True
-    return Shape(base, place, edge, boundary, number, ribbon, ~differs[edge] & ~boundary)
+    return Shape(base, place, edge, boundary, number, ribbon)
 
 
 def _upward(place: Ints, values: NDArray[Any]) -> NDArray[Any]:
@@ -288,7 +282,7 @@ def _rim(
 
     pq = shape.base.pq
     long = np.linalg.norm(pq[:, _NEXT] - pq, axis=2).clip(1e-300)
-    near = np.where(shape.smooth, _SNAP, (_LEAN * np.ptp(pq, axis=(0, 1)).max() / long).clip(_SNAP, 0.05))
+    near = (_LEAN * np.ptp(pq, axis=(0, 1)).max() / long).clip(_SNAP, 0.05)
     close = np.zeros(len(lines.ends))
     np.maximum.at(close, shape.edge.reshape(-1), near.reshape(-1))
     end = (t <= close[edge]) | (t >= 1.0 - close[edge])
@@ -343,7 +337,8 @@ _Cuts = dict[tuple[int, int], list[tuple[float, int]]]  # by a lid's edge: point
 def _joined(shape: Shape, lines: _Lines, lids: _Lids, slot: Ints) -> tuple[Ints, Ints]:
     """The lids with the walls between them: triangles (m, 3) and slots (m,)."""
     _, more, which = _edges(lids.points)
-    face, corner = np.divmod(np.flatnonzero(more[which] > 0), 3)
+    each, first = np.unique(which, return_index=True)  # a sliver may run along an edge once more
+    face, corner = np.divmod(first[more[each] > 0], 3)
     ahead = (corner + 1) % 3
     both = lids.on[face, corner] & lids.on[face, ahead]
     rim = both.any(axis=1)

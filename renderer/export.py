@@ -137,7 +137,7 @@ def closed(vertices: Floats, triangles: Ints, material: Ints, limit: int = LIMIT
         short = wrong[np.linalg.norm(points[wrong[:, 0]] - points[wrong[:, 1]], axis=1) <= tiny]
         if len(short):
             faces = _merged(len(points), short)[faces]
-        elif number and not _unfolded(points, faces, wrong, tiny):
+        elif number and not (number < _ROUNDS // 2 and _unfolded(points, faces, wrong, tiny)):  # it may go to and fro
             count = len(points)
             points, faces = _parted(points, faces, wrong, tiny)
             if len(points) == count:
