@@ -119,7 +119,7 @@ def _margin(
     ends = np.array([[window[i], window[j]] for i in (0, 2) for j in (1, 3)])
 
     def reach(place: Floats, point: bool) -> float:
-        """How far a line from `place` goes sideways on its way through the grooves."""
+        """How far a line from the window's deepest point to `place` goes sideways on its way through the grooves."""
         if not point:
             x = dual @ place
             return tall * float(np.hypot(x[0], x[1])) / float(x[2]) if x[2] > 0.0 else 0.0
@@ -127,9 +127,13 @@ def _margin(
         far = float(np.hypot(ends[:, 0] - x[0], ends[:, 1] - x[1]).max())
         return 0.0 if x[2] <= -pattern.depth else far * min(tall / (x[2] + pattern.depth), 1.0)
 
-    sideways = [reach(eye, True), *(reach(light["vector"], light["kind"] == POINT) for light in lights)]
+    # How far beyond the window what is seen through it lies, or what hides it; and then what shades that.
+    x = dual @ (eye - origin)
+    far = float(np.hypot(ends[:, 0] - x[0], ends[:, 1] - x[1]).max())
+    seen = far * max(pattern.depth, pattern.height) / float(x[2]) if x[2] > 0.0 else 0.0
+    shaded = max((reach(light["vector"], light["kind"] == POINT) for light in lights), default=0.0)
     size = max(window[2] - window[0], window[3] - window[1])
-    return float(min(max(sideways), _FAR * tall, 4.0 * size) + 0.01 * size)
+    return float(min(seen + shaded, _FAR * tall, 4.0 * size) + 0.01 * size)
 
 
 def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Body:

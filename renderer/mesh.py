@@ -19,7 +19,20 @@ import numpy as np
 from manifold3d import Error, Manifold, OpType
 from numpy.typing import NDArray
 
-from renderer.sweep import End, Faces, Facets, Ribbon, Stroke, extent, positions, ribbons, solid, strokes_of, sweep
+from renderer.sweep import (
+    End,
+    Faces,
+    Facets,
+    Prism,
+    Ribbon,
+    Stroke,
+    extent,
+    positions,
+    ribbons,
+    solid,
+    strokes_of,
+    sweep,
+)
 from renderer.tables import Floats, Ints, Pattern
 
 LIMIT = 4_000_000
@@ -46,7 +59,7 @@ class _Box(NamedTuple):
 
 
 class _Copy(NamedTuple):
-    ribbon: Ribbon
+    ribbon: Ribbon | Prism
     shift: tuple[float, float]
 
 
@@ -66,8 +79,6 @@ def build(
     p0, q0, p1, q1 = window
     if not (p1 > p0 and q1 > q0 and all(math.isfinite(v) for v in window)):
         raise ValueError(f"window: expected p0 < p1 and q0 < q1, found {window}")
-    if len(pattern.part_first):
-        raise ValueError("profiles that overhang, which are not meshed yet")
     tall = pattern.height + pattern.depth
     if margin is None:
         margin = max(4.0 * pattern.reach, 4.0 * tall) or 0.05 * max(p1 - p0, q1 - q0)

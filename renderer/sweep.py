@@ -18,6 +18,7 @@ import numpy as np
 from manifold3d import Error, Manifold, Mesh64
 from numpy.typing import NDArray
 
+from renderer.outline import Outline, Shape, added, removed
 from renderer.tables import (
     CORNER,
     FLAT,
@@ -110,6 +111,7 @@ class Stroke(NamedTuple):
     priority: int
     hair: float
     tolerance: float
+    outline: Outline | None  # of a profile that overhangs; its section is then level, and has but the places b
 
 
 def scale_of(pattern: Pattern, piece: np.void) -> Scale:
@@ -143,6 +145,19 @@ def section_of(pattern: Pattern, piece: np.void) -> Section:
     return Section(np.array(out_b), np.array(out_w), np.array(out_f, np.int32))
 
 
+def outline_of(pattern: Pattern, piece: np.void) -> Outline | None:
+    """The cross-section, where it overhangs."""
+    index = int(pattern.grooves[piece["groove"]]["profile"])
+    if not len(pattern.part_first) or pattern.part_first[index] == pattern.part_first[index + 1]:
+        return None
+    row = pattern.profiles[index]
+    return Outline(
+        pattern.points[row["start"] : row["start"] + row["count"]],
+        pattern.parts[pattern.part_first[index] : pattern.part_first[index + 1]],
+        (int(row["inner_first"]), int(row["inner_last"])),
+    )
+
+
 def insert(section: Section, at: Floats) -> Section:
     """The same polyline with points at these b, where it has none."""
     b, w, facet = section
@@ -173,7 +188,11 @@ def strokes_of(pattern: Pattern, index: int, tolerance: float | None) -> list[St
     piece = pattern.pieces[index]
     groove = pattern.grooves[piece["groove"]]
     row = pattern.profiles[groove["profile"]]
-    section, scale = section_of(pattern, piece), scale_of(pattern, piece)
+    section, scale, outline = section_of(pattern, piece), scale_of(pattern, piece), outline_of(pattern, piece)
+    if outline is not None:
+        places = outline.places
+        tallest = float(np.abs(section.w).max())
+        section = Section(places, np.full(len(places), tallest), np.full(len(places) - 1, -1, np.int32))
     left, right = float(section.b[0]), float(section.b[-1])
     half = max(abs(left), abs(right)) * scale.most
     if not right > left or not half > 0.0:
@@ -199,6 +218,7 @@ def strokes_of(pattern: Pattern, index: int, tolerance: float | None) -> list[St
         priority=int(groove["priority"]),
         hair=hair,
         tolerance=tol,
+        outline=outline,
     )
     if piece["closed"]:
         seam = scale(np.array([0.0, length]))
@@ -500,6 +520,28 @@ class Ribbon(NamedTuple):
         return 2 * around * (count if self.stroke.closed else count - 1) + 2 * (around - 2)
 
 
+class Prism(NamedTuple):
+    """What to sweep of a cross-section that overhangs."""
+
+    stroke: Stroke
+    whole: Section  # as of a Ribbon, and `rings` as well
+    rings: Floats
+    shape: Shape  # over the places of `whole`
+    bottom: float  # where it ends downwards and
+    top: float  # upwards
+    widen: tuple[int, int]  # how many hairs its uppermost side stands out by, on the left and on the right
+
+    @property
+    def section(self) -> Section:
+        """What it lies over."""
+        return self.whole
+
+    def triangles(self) -> int:
+        """How many triangles the solid has."""
+        count = len(self.rings) if self.stroke.closed else len(self.rings) - 1
+        return 2 * len(self.shape.edges) * count + 2 * len(self.shape.triangles)
+
+
 def _raised(whole: Section, inner: NDArray[np.intp]) -> list[Section]:
     """The parts of a cross-section that stand above w = 0, to be added. Over the internal facets, above which the
     groove itself removes everything, the added solid is higher: so its faces never coincide with the removal's."""
@@ -531,9 +573,9 @@ def _raised(whole: Section, inner: NDArray[np.intp]) -> list[Section]:
     return parts
 
 
-def ribbons(stroke: Stroke, *, top: float, bottom: float) -> dict[str, list[Ribbon]]:
+def ribbons(stroke: Stroke, *, top: float, bottom: float) -> dict[str, list[Ribbon | Prism]]:
     """The ribbons of a stroke: 'add', 'remove' and its band above ('clear') and below ('fill') the plate's surface."""
-    out: dict[str, list[Ribbon]] = {"add": [], "remove": [], "clear": [], "fill": []}
+    out: dict[str, list[Ribbon | Prism]] = {"add": [], "remove": [], "clear": [], "fill": []}
     for whole in _refined(stroke):
         inner = np.flatnonzero((whole.facet >= stroke.inner[0]) & (whole.facet < stroke.inner[1]))
         if len(inner) and whole.w[inner[0] : inner[-1] + 2].max() > min(whole.w[inner[0]], whole.w[inner[-1] + 1]):
@@ -555,12 +597,20 @@ def ribbons(stroke: Stroke, *, top: float, bottom: float) -> dict[str, list[Ribb
             if abs(float(whole.b[-which]) * stroke.scale.most) >= abs(radius) * (1.0 - 1e-9):
                 free[which] = False
         widen = (int(free[0]), int(free[1]))
-        if len(inner):
+        if stroke.outline is not None:
+            shape = removed(stroke.outline, whole.b)
+            if shape is not None:
+                out["remove"].append(Prism(stroke, whole, longer, shape, bottom, top, widen))
+            shape = added(stroke.outline, whole.b)
+            if shape is not None:
+                out["add"].append(Prism(stroke, whole, rings, shape, bottom, top, (0, 0)))
+        elif len(inner):
             first, last = int(inner[0]), int(inner[-1]) + 1
             part = Section(whole.b[first : last + 1], whole.w[first : last + 1], whole.facet[first:last])
             if part.b[-1] > part.b[0]:
                 out["remove"].append(Ribbon(stroke, whole, longer, part, top, True, widen))
-        out["add"] += [Ribbon(stroke, whole, rings, part, bottom, False, (0, 0)) for part in _raised(whole, inner)]
+        if stroke.outline is None:
+            out["add"] += [Ribbon(stroke, whole, rings, part, bottom, False, (0, 0)) for part in _raised(whole, inner)]
         ends = _groups(whole.b)
         single = np.array([first for first, _ in ends])
         level = Section(whole.b[single], np.zeros(len(single)), np.full(len(single) - 1, -1, np.int32))
@@ -584,6 +634,8 @@ class Facets:
         row = (stroke.slot + facet, 0.0, 0.0, 0.0, 0.0)
         if stroke.curvature != 0.0 and stroke.scale.kind == SCALE_CONSTANT:
             b, w, of = stroke.section
+            if stroke.outline is not None:
+                (b, w), of = stroke.outline.points.T, np.arange(len(stroke.outline.points) - 1, dtype=np.int32)
             edges = np.flatnonzero(of == facet)
             db, dw = np.diff(b)[edges], np.diff(w)[edges]
             i = int(np.argmax(np.hypot(db, dw)))
@@ -606,23 +658,45 @@ class Faces(NamedTuple):
     tags: NDArray[np.int64]  # (m,) numbers of `Facets`, 0: none
 
 
-def sweep(ribbon: Ribbon, shift: tuple[float, float], known: Facets) -> Faces:
-    """The solid of a ribbon, moved by `shift`; what it is made of goes into `known`."""
-    stroke, section = ribbon.stroke, ribbon.section
+def sweep(ribbon: Ribbon | Prism, shift: tuple[float, float], known: Facets) -> Faces:
+    """The solid of a ribbon or prism, moved by `shift`; what it is made of goes into `known`."""
+    stroke = ribbon.stroke
+    if isinstance(ribbon, Prism):
+        shape = ribbon.shape
+        s = ribbon.rings[:, shape.column]
+        factor = stroke.scale(s)
+        b = factor * ribbon.whole.b[shape.column]
+        w = factor * np.where(np.isfinite(shape.w), shape.w, 0.0)
+        w[:, shape.w == -math.inf], w[:, shape.w == math.inf] = ribbon.bottom, ribbon.top
+        upper = np.flatnonzero(shape.w == math.inf)
+        if len(upper):
+            b[:, upper[0]] -= stroke.hair * ribbon.widen[0]
+            b[:, upper[-1]] += stroke.hair * ribbon.widen[1]
+        return _along(stroke, s, b, w, shape.edges, shape.triangles, shift, known)
+    section = ribbon.section
     edges, caps, groups = _loop(section, ribbon.up)
     m, n = len(section.b), len(groups)
     # s of this ribbon's points: those of the whole section have the same b.
     column = np.searchsorted(ribbon.whole.b, section.b)
     heads = np.array([first for first, _ in groups])
     s = np.concatenate([ribbon.rings[:, column], ribbon.rings[:, column[heads]]], axis=1)
-    rings, size = s.shape
     factor = stroke.scale(s)
     b = factor * np.concatenate([section.b, section.b[heads]])
     b[:, m] -= stroke.hair * ribbon.widen[0]
     b[:, m + n - 1] += stroke.hair * ribbon.widen[1]
-    w = np.empty((rings, size))
+    w = np.empty(s.shape)
     w[:, :m] = factor[:, :m] * section.w
     w[:, m:] = ribbon.flat
+    made = _along(stroke, s, b, w, edges, caps, shift, known)
+    return made if ribbon.up else made._replace(triangles=made.triangles[:, ::-1])
+
+
+def _along(
+    stroke: Stroke, s: Floats, b: Floats, w: Floats, edges: Ints, caps: Ints, shift: tuple[float, float], known: Facets
+) -> Faces:
+    """The closed mesh whose rings have their points at (s, b, w) (rings, points); edges (start, stop, facet or -1) and
+    triangles `caps` as of a region of the cross-section, anticlockwise."""
+    rings, size = s.shape
     p, q = positions(stroke, s, b)
     vertices = np.stack([p + shift[0], q + shift[1], w], axis=2).reshape(-1, 3)
 
@@ -642,8 +716,6 @@ def sweep(ribbon: Ribbon, shift: tuple[float, float], known: Facets) -> Faces:
         faces += [caps[:, ::-1], caps + (rings - 1) * size]
         tags.append(np.zeros(2 * len(caps), np.int64))
     triangles, ids = np.concatenate(faces), np.concatenate(tags)
-    if not ribbon.up:
-        triangles = triangles[:, ::-1]
     if stroke.curvature != 0.0 and stroke.scale.kind == SCALE_CONSTANT:
         # At an arc's centre all rings meet in one point.
         axis = np.abs(1.0 / stroke.curvature - b[0]) <= 1e-9 * abs(1.0 / stroke.curvature)

@@ -424,7 +424,7 @@ def on_mesh(base: Base, cell: int, normal: Floats, bend: Floats, v: float, w: fl
     p1, q1, p2, q2 = pq[1, 0] - pq[0, 0], pq[1, 1] - pq[0, 1], pq[2, 0] - pq[0, 0], pq[2, 1] - pq[0, 1]
     area = p1 * q2 - p2 * q1
     if area == 0.0 or (normal[0] == 0.0 and normal[1] == 0.0 and bend[2] == 0.0):
-        return up
+        return up if normal[2] >= 0.0 else (-up[0], -up[1], -up[2])
     one, two = np.empty(3), np.empty(3)
     for c in range(3):  # the edges of the triangle raised to this height
         ground = x[0, c] + height * rise[0] * smooth[0, c]

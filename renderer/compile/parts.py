@@ -7,13 +7,14 @@ a ray it is one interval.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from itertools import pairwise
+
+from renderer.outline import height
 
 Row = tuple[float, float, float, float, float, float, int, int, int]
 """One PART."""
 
-Points = Sequence[tuple[float, float]]
+Points = tuple[tuple[float, float], ...]
 _Key = tuple[int, int, int]  # lower and upper facet, removes
 
 _NEAR = 1e-12  # places this close, as a part of the profile's width, are one
@@ -64,12 +65,6 @@ def _between(points: Points, first: int, last: int, left: float, right: float) -
         inner.insert(0, -1)
     keys |= {(lower, upper, 1) for upper, lower in zip(inner[::2], inner[1::2], strict=False)}
     return keys
-
-
-def height(points: Points, facet: int, b: float) -> float:
-    """w of a facet at b; exactly that of its points at theirs."""
-    (b0, w0), (b1, w1) = points[facet], points[facet + 1]
-    return w0 if b == b0 else w1 if b == b1 else w0 + (b - b0) / (b1 - b0) * (w1 - w0)
 
 
 def _row(points: Points, b0: float, b1: float, key: _Key) -> Row:

@@ -17,6 +17,7 @@ from renderer.geometry.spans import (
     ADD,
     BAND,
     BODY,
+    CAP_FINISH,
     CAP_START,
     CHORD,
     END,
@@ -32,7 +33,7 @@ from renderer.geometry.spans import (
     sort,
 )
 from renderer.kernel import leaf
-from renderer.tables import SCALE_CONSTANT, Pattern
+from renderer.tables import PROFILE, SCALE_CONSTANT, Pattern
 
 SEARCH = 1024
 """Stretches of a shadow ray that are looked at: all that a pattern has, and of one that tiles for ever so many tiles
@@ -254,7 +255,7 @@ def normal_of(
     elif m.facet == SIDE:
         across = 1.0
     elif m.facet == END:
-        along = 1.0
+        along, across = 1.0, -lean(piece, profile, m.part, s, b)
     else:
         up = 1.0
     if abs(bend) > 1e-9:
@@ -263,3 +264,21 @@ def normal_of(
     if n0 * gp + n1 * gq + up < 0.0:
         return -n0, -n1, -up
     return n0, n1, up
+
+
+@leaf
+def lean(piece: np.void, profile: np.void, part: int, s: float, b: float) -> float:
+    """The slope ds / db of the wall that ends a part of the groove at (s, b): where a `profile` end of unequal halves
+    goes over from being read across to being read along."""
+    finish = part in (CAP_FINISH, TAIL_FINISH) or (part == BODY and 2.0 * s > piece.length)
+    if profile.right <= 0.0 or (piece.finish_end if finish else piece.start_end) != PROFILE:
+        return 0.0
+    outward = 1.0 if finish else -1.0
+    left = -profile.left / profile.right if profile.left < 0.0 else 0.0
+    if part in (CAP_START, CAP_FINISH):
+        return outward * (-1.0 if b > 0.0 else left)
+    if part == BODY and piece.curvature != 0.0:
+        return 0.0
+    if b > 0.0:
+        return outward
+    return -outward / left if left > 0.0 else 0.0
