@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 import schema
 from renderer import CACHE, body, film, relief, shading
+from renderer.area import area_sampling
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import csg
 from renderer.errors import Cancelled, Fault, RenderError
@@ -31,7 +32,7 @@ from renderer.trace import Truth
 
 TILE = 64  # pixels
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
-METHODS = ("auto", "base", "segment", "line", "csg", "geometry", "relief")
+METHODS = ("auto", "base", "segment", "line", "area", "csg", "geometry", "relief")
 AOVS = ("method",)
 
 _READY = CACHE / "ready"  # written once all kernels have been compiled
@@ -134,8 +135,12 @@ class Frame:
         if isinstance(self.model, Textures) and pattern is not BARE:
             relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
             return timed("relief", start)
-        line(MODES.get(settings.method, LOOSE), pattern, seen.footprints, chosen, *rest)
-        timed("line", start)
+        if settings.method == "area" and pattern is not BARE:
+            area_sampling(pattern, seen.footprints, chosen, *rest)
+            timed("area", start)
+        else:
+            line(MODES.get(settings.method, LOOSE), pattern, seen.footprints, chosen, *rest)
+            timed("line", start)
         left = chosen[method[chosen] == NOT_MINE]
         if len(left):
             start = time.perf_counter()

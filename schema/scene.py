@@ -82,7 +82,7 @@ class Object(Model):
 class Render(Model):
     """How to render."""
 
-    method: Literal["auto", "base", "segment", "line", "csg", "geometry", "relief"] = Field(
+    method: Literal["auto", "base", "segment", "line", "area", "csg", "geometry", "relief"] = Field(
         default="auto",
         description="auto takes the cheapest that keeps within `tolerance`; base leaves the grooves out; geometry "
         "meshes them; relief marches rays through a texture of their heights. Default: auto.",

@@ -1,0 +1,316 @@
+"""The surface of the local solid as convex faces: the envelope of the strips (DESIGN 1.2), and the walls at its steps.
+
+Above a point of the plane the highest priority whose band holds it decides. Of its grooves the lowest internal facet
+is the surface, as it removes all above it; where there is none the highest external facet, as all are added first.
+What no band holds is the plane. So the part of a strip that is surface is the strip less other strips, or what of them
+is lower or higher: convex regions again, as heights are linear.
+
+The surface steps only where a vertical facet stands, a groove ends square, or a band or a removal ends beside
+something else. Along each such line the heights on both sides are compared stretch by stretch.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from renderer.geometry.polygon import CORNERS, FULL, Counts, subtract
+from renderer.geometry.strips import Strips
+from renderer.kernel import leaf, routine
+from renderer.tables import Floats
+
+FACES = 4096
+BESIDE = 64  # strips along one line
+STOPS = 2048  # places along one line where something begins or ends
+FLAT_PLANE = -1  # the tag of the base plane's faces
+
+
+class Faces(NamedTuple):
+    """Convex faces of the solid's surface above one rectangle; memory of one thread."""
+
+    made: Counts  # (1,)
+    corner: Floats  # (FACES, CORNERS, 3) (p, q, w), anticlockwise from outside
+    count: Counts  # (FACES,)
+    plane: Floats  # (FACES, 4) n, c: n . X + c = 0, positive outside
+    box: Floats  # (FACES, 6) lowest and highest p, q, w
+    tag: Counts  # (FACES, 4) place of the piece in `Nearby` (-1: the plane), facet, part, 1: a wall
+    part: Floats  # (FACES, CORNERS, 2) scratch: what is left of a strip
+    part_count: Counts  # (FACES,)
+    beside: Floats  # (BESIDE, 4) of a strip along a line: from, to, its heights at the line's ends
+    beside_tag: Counts  # (BESIDE, 4) strip, rank, internal, sides: 1 left, 2 right
+    stop: Floats  # (STOPS,)
+
+
+@leaf
+def faces_of() -> Faces:
+    return Faces(
+        np.zeros(1, np.int64), np.empty((FACES, CORNERS, 3)), np.empty(FACES, np.int64), np.empty((FACES, 4)),
+        np.empty((FACES, 6)), np.empty((FACES, 4), np.int64), np.empty((FACES, CORNERS, 2)),
+        np.empty(FACES, np.int64), np.empty((BESIDE, 4)), np.empty((BESIDE, 4), np.int64), np.empty(STOPS),
+    )  # fmt: skip
+
+
+@leaf
+def edges(polygon: Floats, count: int, least: float, planes: Floats) -> int:
+    """The half-planes of a polygon's edges, to the left of each; those of no length have no direction."""
+    n = 0
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        dx, dy = polygon[j, 0] - polygon[i, 0], polygon[j, 1] - polygon[i, 1]
+        long = math.hypot(dx, dy)
+        if long <= least:
+            continue
+        planes[n, 0], planes[n, 1] = -dy / long, dx / long
+        planes[n, 2] = (polygon[i, 0] * dy - polygon[i, 1] * dx) / long
+        n += 1
+    return n
+
+
+@leaf
+def envelope(strips: Strips, rect: Floats, tall: float, faces: Faces) -> bool:
+    """Fill `faces` with what of the strips and of the plane is surface. False where there is no room.
+
+    tall: the height from the lowest to the highest point of the pattern.
+    """
+    n_strips, n_bands = strips.made[0], strips.made[1]
+    size = max(rect[2] - rect[0], rect[3] - rect[1])
+    short, least, tie = 1e-12 * size, 1e-15 * size * size, 1e-10 * tall
+    planes = strips.sides
+    faces.made[0] = 0
+    for i in range(-1, n_strips):
+        polygon = faces.part[0]
+        n = 1
+        if i < 0:
+            polygon[0, 0], polygon[0, 1], polygon[1, 0], polygon[1, 1] = rect[0], rect[1], rect[2], rect[1]
+            polygon[2, 0], polygon[2, 1], polygon[3, 0], polygon[3, 1] = rect[2], rect[3], rect[0], rect[3]
+            faces.part_count[0] = 4
+            for j in range(n_bands):
+                k = edges(strips.band[j], strips.band_count[j], short, planes)
+                if k >= 3:
+                    n = subtract(faces.part, faces.part_count, n, planes, k, least, strips.one, strips.two)
+                if n < 0:
+                    return False
+                if n == 0:
+                    break
+        else:
+            for k in range(strips.count[i]):
+                polygon[k, 0], polygon[k, 1] = strips.polygon[i, k, 0], strips.polygon[i, k, 1]
+            faces.part_count[0] = strips.count[i]
+            box, height, rank, inner = strips.box[i], strips.height[i], strips.tag[i, 3], strips.tag[i, 4]
+            for j in range(n_strips):
+                other = strips.box[j]
+                if j == i or other[0] >= box[2] or other[2] <= box[0] or other[1] >= box[3] or other[3] <= box[1]:
+                    continue
+                rank_j, inner_j = strips.tag[j, 3], strips.tag[j, 4]
+                if rank_j < rank or (rank_j == rank and inner_j < inner):
+                    continue
+                k = edges(strips.polygon[j], strips.count[j], short, planes)
+                if k < 3:
+                    continue
+                if rank_j == rank and inner_j == inner:
+                    sign = 1.0 if inner else -1.0
+                    a = sign * (height[0] - strips.height[j, 0])
+                    b = sign * (height[1] - strips.height[j, 1])
+                    c = sign * (height[2] - strips.height[j, 2])
+                    most = low = a * strips.polygon[i, 0, 0] + b * strips.polygon[i, 0, 1] + c
+                    for m in range(1, strips.count[i]):
+                        d = a * strips.polygon[i, m, 0] + b * strips.polygon[i, m, 1] + c
+                        most, low = max(most, d), min(low, d)
+                    if most <= tie and low >= -tie:  # the same facet twice
+                        if j > i:
+                            continue
+                    elif most <= 0.0:
+                        continue
+                    elif low < 0.0:
+                        planes[k, 0], planes[k, 1], planes[k, 2] = a, b, c
+                        k += 1
+                n = subtract(faces.part, faces.part_count, n, planes, k, least, strips.one, strips.two)
+                if n < 0:
+                    return False
+                if n == 0:
+                    break
+        for m in range(n):
+            at = faces.made[0]
+            if at == FACES:
+                return False
+            h0, h1, h2 = 0.0, 0.0, 0.0
+            if i >= 0:
+                h0, h1, h2 = strips.height[i, 0], strips.height[i, 1], strips.height[i, 2]
+            for k in range(faces.part_count[m]):
+                p, q = faces.part[m, k, 0], faces.part[m, k, 1]
+                faces.corner[at, k, 0], faces.corner[at, k, 1] = p, q
+                faces.corner[at, k, 2] = h0 * p + h1 * q + h2
+            faces.count[at] = faces.part_count[m]
+            faces.plane[at, 0], faces.plane[at, 1], faces.plane[at, 2], faces.plane[at, 3] = -h0, -h1, 1.0, -h2
+            for k in range(3):
+                faces.tag[at, k] = strips.tag[i, k] if i >= 0 else FLAT_PLANE
+            if faces.tag[at, 1] < 0:
+                faces.tag[at, 0] = FLAT_PLANE
+            faces.tag[at, 3] = 0
+            enclose(faces, at)
+            faces.made[0] = at + 1
+    for i in range(strips.made[2]):
+        if not raise_wall(strips, i, 1e-9 * size, tie, faces):
+            return False
+    return True
+
+
+@leaf
+def enclose(faces: Faces, at: int) -> None:
+    box = faces.box[at]
+    for k in range(3):
+        box[k], box[3 + k] = math.inf, -math.inf
+        for j in range(faces.count[at]):
+            box[k], box[3 + k] = min(box[k], faces.corner[at, j, k]), max(box[3 + k], faces.corner[at, j, k])
+
+
+@leaf
+def is_along(polygon: Floats, count: int, x0: float, y0: float, x1: float, y1: float, near: float) -> int:
+    """On which side of the line from (x0, y0) to (x1, y1) a polygon lies that has an edge along it: 1 left, 2 right;
+    else 3."""
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        ex, ey = polygon[j, 0] - polygon[i, 0], polygon[j, 1] - polygon[i, 1]
+        long = math.hypot(ex, ey)
+        if long <= 1e-3 * near:
+            continue
+        d0 = (ex * (y0 - polygon[i, 1]) - ey * (x0 - polygon[i, 0])) / long
+        d1 = (ex * (y1 - polygon[i, 1]) - ey * (x1 - polygon[i, 0])) / long
+        if abs(d0) <= near and abs(d1) <= near:
+            return 1 if ex * (x1 - x0) + ey * (y1 - y0) > 0.0 else 2
+    return 3
+
+
+@leaf
+def top_at(faces: Faces, n: int, t: float, side: int) -> int:
+    """Which of the n strips along a line is the surface at t on one side of it; -1: the plane."""
+    best, best_rank, best_inner, best_height = -1, np.int64(-1), np.int64(0), 0.0
+    for k in range(n):
+        if not faces.beside[k, 0] <= t <= faces.beside[k, 1] or faces.beside_tag[k, 3] & side == 0:
+            continue
+        rank, inner = faces.beside_tag[k, 1], faces.beside_tag[k, 2]
+        height = faces.beside[k, 2] + t * (faces.beside[k, 3] - faces.beside[k, 2])
+        better = rank > best_rank or (rank == best_rank and inner > best_inner)
+        if rank == best_rank and inner == best_inner:
+            better = height < best_height if inner else height > best_height
+        if better:
+            best, best_rank, best_inner, best_height = k, rank, inner, height
+    return best
+
+
+@routine
+def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces) -> bool:
+    """Add what stands along one of the lines `strips.wall`. False where there is no room."""
+    x0, y0, x1, y1 = strips.wall[wall, 0], strips.wall[wall, 1], strips.wall[wall, 2], strips.wall[wall, 3]
+    long = math.hypot(x1 - x0, y1 - y0)
+    dx, dy = (x1 - x0) / long, (y1 - y0) / long
+    n, stops = 0, 2
+    faces.stop[0], faces.stop[1] = 0.0, 1.0
+    for i in range(strips.made[0]):
+        box = strips.box[i]
+        if max(x0, x1) < box[0] - near or min(x0, x1) > box[2] + near:
+            continue
+        if max(y0, y1) < box[1] - near or min(y0, y1) > box[3] + near:
+            continue
+        polygon, count = strips.polygon[i], strips.count[i]
+        low, high = 0.0, 1.0
+        for k in range(count):
+            m = k + 1 if k + 1 < count else 0
+            ex, ey = polygon[m, 0] - polygon[k, 0], polygon[m, 1] - polygon[k, 1]
+            edge = math.hypot(ex, ey)
+            if edge <= 1e-3 * near:
+                continue
+            d0 = (ex * (y0 - polygon[k, 1]) - ey * (x0 - polygon[k, 0])) / edge
+            d1 = (ex * (y1 - polygon[k, 1]) - ey * (x1 - polygon[k, 0])) / edge
+            if abs(d0) <= near and abs(d1) <= near:
+                continue
+            if d0 <= near and d1 <= near:
+                high = -1.0
+            elif d0 < 0.0:
+                low = max(low, d0 / (d0 - d1))
+            elif d1 < 0.0:
+                high = min(high, d0 / (d0 - d1))
+        if (high - low) * long <= near:
+            continue
+        if n == BESIDE or stops + 2 > STOPS:
+            return False
+        faces.beside[n, 0], faces.beside[n, 1] = low, high
+        height = strips.height[i]
+        faces.beside[n, 2] = height[0] * x0 + height[1] * y0 + height[2]
+        faces.beside[n, 3] = height[0] * x1 + height[1] * y1 + height[2]
+        faces.beside_tag[n, 0], faces.beside_tag[n, 1], faces.beside_tag[n, 2] = i, strips.tag[i, 3], strips.tag[i, 4]
+        faces.beside_tag[n, 3] = is_along(polygon, count, x0, y0, x1, y1, near)
+        faces.stop[stops], faces.stop[stops + 1] = low, high
+        stops += 2
+        n += 1
+    for i in range(n):
+        for j in range(-1, i):
+            g0, g1 = faces.beside[i, 2], faces.beside[i, 3]
+            if j >= 0:
+                g0, g1 = g0 - faces.beside[j, 2], g1 - faces.beside[j, 3]
+            if (g0 > tie and g1 < -tie) or (g0 < -tie and g1 > tie):
+                if stops == STOPS:
+                    return False
+                faces.stop[stops] = g0 / (g0 - g1)
+                stops += 1
+    walls = 0  # earlier ones along the same line
+    for i in range(wall):
+        a0 = (strips.wall[i, 0] - x0) * dy - (strips.wall[i, 1] - y0) * dx
+        a1 = (strips.wall[i, 2] - x0) * dy - (strips.wall[i, 3] - y0) * dx
+        if abs(a0) <= near and abs(a1) <= near:
+            t0 = ((strips.wall[i, 0] - x0) * dx + (strips.wall[i, 1] - y0) * dy) / long
+            t1 = ((strips.wall[i, 2] - x0) * dx + (strips.wall[i, 3] - y0) * dy) / long
+            if n + walls == BESIDE or stops + 2 > STOPS:
+                return False
+            faces.beside[n + walls, 0], faces.beside[n + walls, 1] = min(t0, t1), max(t0, t1)
+            faces.stop[stops], faces.stop[stops + 1] = min(max(t0, 0.0), 1.0), min(max(t1, 0.0), 1.0)
+            stops += 2
+            walls += 1
+    faces.stop[:stops].sort()
+    for k in range(stops - 1):
+        a, b = faces.stop[k], faces.stop[k + 1]
+        if (b - a) * long <= near:
+            continue
+        t = 0.5 * (a + b)
+        taken = False
+        for i in range(n, n + walls):
+            taken = taken or faces.beside[i, 0] < t < faces.beside[i, 1]
+        if taken:
+            continue
+        left, right = top_at(faces, n, t, 1), top_at(faces, n, t, 2)
+        if left == right:
+            continue
+        la = lb = ra = rb = 0.0
+        if left >= 0:
+            la = faces.beside[left, 2] + a * (faces.beside[left, 3] - faces.beside[left, 2])
+            lb = faces.beside[left, 2] + b * (faces.beside[left, 3] - faces.beside[left, 2])
+        if right >= 0:
+            ra = faces.beside[right, 2] + a * (faces.beside[right, 3] - faces.beside[right, 2])
+            rb = faces.beside[right, 2] + b * (faces.beside[right, 3] - faces.beside[right, 2])
+        if abs(la - ra) <= tie and abs(lb - rb) <= tie:
+            continue
+        at = faces.made[0]
+        if at == FACES:
+            return False
+        to_right = la + lb > ra + rb
+        ax, ay, bx, by = x0 + a * (x1 - x0), y0 + a * (y1 - y0), x0 + b * (x1 - x0), y0 + b * (y1 - y0)
+        if not to_right:
+            ax, ay, bx, by = bx, by, ax, ay
+            la, lb, ra, rb = rb, ra, lb, la
+        corner = faces.corner[at]
+        corner[0, 0], corner[0, 1], corner[0, 2] = ax, ay, min(la, ra)
+        corner[1, 0], corner[1, 1], corner[1, 2] = bx, by, min(lb, rb)
+        corner[2, 0], corner[2, 1], corner[2, 2] = bx, by, max(lb, rb)
+        corner[3, 0], corner[3, 1], corner[3, 2] = ax, ay, max(la, ra)
+        faces.count[at] = 4
+        sign = 1.0 if to_right else -1.0
+        faces.plane[at, 0], faces.plane[at, 1], faces.plane[at, 2] = sign * dy, -sign * dx, 0.0
+        faces.plane[at, 3] = -sign * (dy * x0 - dx * y0)
+        for i in range(3):
+            faces.tag[at, i] = strips.wall_tag[wall, i]
+        faces.tag[at, 3] = 1
+        enclose(faces, at)
+        faces.made[0] = at + 1
+    return True
