@@ -25,10 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.faces import FACES, Faces, envelope, faces_of
-from renderer.geometry.polygon import CORNERS, Counts, area, clip, clipped, subtract
+from renderer.geometry.polygon import CORNERS, Counts, area, subtract
 from renderer.geometry.query import Nearby, find, nearby
 from renderer.geometry.solid import Meeting, normal_of
-from renderer.geometry.strips import CHUNKS, Strips, divide, lay, strips_of
+from renderer.geometry.strips import Strips, divide, lay, strips_of
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel, leaf
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
@@ -38,9 +38,10 @@ NOT_MINE = 255  # in `method`: left to another method
 CAPACITY = fixed(512)  # pieces near a rectangle
 PARTS = 512  # polygons that are left of one face
 HALVES = 65536  # half-planes of what hides or shades
-CHORD = 0.004  # how far chords leave arcs, in widths of the footprint
+CHORD = 0.008  # how far chords leave arcs, in widths of the footprint
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
-WHOLE = 1e-5  # the shares of a footprint sum to one within this, or it is left to another method
+WHOLE = 1e-6  # the shares of a footprint sum to one within this, or it is left to another method
+CHORDED = 4e-3  # ... where chords stand for arcs and steps for scales: the shares are then divided by their sum
 AROUND = (7.0, 2.0, 0.0)  # how much more than a footprint needs the faces are made for, in its sizes
 FEW = (12, 32, 512)  # while no more pieces than this are near
 
@@ -121,33 +122,33 @@ def make(
     size: of the footprint, pattern units.
     """
     m = pattern.reach
-    count = -1
-    for k in range(3):
-        more = AROUND[k] * size
-        rect[0], rect[1], rect[2], rect[3] = want[0] - more, want[1] - more, want[2] + more, want[3] + more
-        count = find(pattern, found, rect[0] - m, rect[1] - m, rect[2] + m, rect[3] + m, FEW[k])
-        if count >= 0:
-            break
-    if count < 0:
-        return False
-    strips.made[0] = strips.made[1] = strips.made[2] = 0
     stepped = pattern.height > 0.0
     for groove in pattern.grooves:
         stepped = stepped or groove.priority > 0
-    for k in range(count):
-        chunks = divide(
-            pattern, found.piece[k], found.shift[k, 0], found.shift[k, 1], rect, CHORD * size, strips.chunks
-        )
-        if chunks < 0:
-            return False
-        for i in range(chunks):
-            if not lay(pattern, found.piece[k], k, strips.chunks[i], rect, stepped, strips):
-                return False
-    return envelope(strips, rect, pattern.height + pattern.depth, faces)
+    for k in range(len(AROUND)):
+        more = AROUND[k] * size
+        rect[0], rect[1], rect[2], rect[3] = want[0] - more, want[1] - more, want[2] + more, want[3] + more
+        count = find(pattern, found, rect[0] - m, rect[1] - m, rect[2] + m, rect[3] + m, FEW[k])
+        room = count >= 0
+        strips.made[0] = strips.made[1] = strips.made[2] = 0
+        for i in range(max(count, 0)):
+            chunks = divide(
+                pattern, found.piece[i], found.shift[i, 0], found.shift[i, 1], rect, CHORD * size, strips.chunks
+            )
+            room = room and chunks >= 0
+            for j in range(chunks):
+                room = room and lay(pattern, found.piece[i], i, strips.chunks[j], rect, stepped, strips)
+            if not room:
+                break
+        if room and envelope(strips, rect, pattern.height + pattern.depth, faces):
+            return True
+    return False
 
 
 @leaf
-def look(pattern: Pattern, frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen) -> bool:
+def look(
+    pattern: Pattern, frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen
+) -> bool:
     """See the faces from a footprint's eye: fill `seen`. False where the eye is on the plane."""
     ray, back = seen.ray, seen.back
     d0, d1, d2 = frame.eye[0], frame.eye[1], frame.eye[2]
@@ -338,7 +339,7 @@ def show(f: int, footprint: np.void, faces: Faces, seen: Seen) -> int:
                 two[made, 0], two[made, 1], two[made, 2] = u1, v1, w1
                 made += 1
             u0, v0, w0, d0 = u1, v1, w1, d1
-        if made < 3 or made > CORNERS - 4:
+        if made < 3:
             return 0
         one, two = two, one
         count = made
@@ -440,7 +441,7 @@ def area_sampling(
                 continue
             looked = footprint.frame
         red = green = blue = whole = 0.0
-        room = True
+        room, chorded = True, False
         for f in range(faces.made[0]):
             if seen.facing[eye, f] <= 0.0:
                 continue
@@ -460,6 +461,7 @@ def area_sampling(
                 slot = pattern.facet_slot[groove.slot + faces.tag[f, 1]] + 1
             material = materials[slots[slot]]
             bent = is_bent(pattern, f, found, faces)
+            chorded = chorded or bent
             plain = distant and not bent and material.metallic == 0.0 and material.f90 == 0.0
             if plain and seen.tinted[f] < 0:
                 seen.tinted[f] = 0
@@ -517,8 +519,8 @@ def area_sampling(
                             red, green, blue = red + share * r, green + share * g, blue + share * b
             if not room:
                 break
-        if not room or not abs(whole - 1.0) <= WHOLE:
+        if not room or not abs(whole - 1.0) <= (CHORDED if chorded else WHOLE):
             continue
         method[index] = AREA
-        radiance[index, 0], radiance[index, 1], radiance[index, 2] = red, green, blue
+        radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / whole, green / whole, blue / whole
     keep(owned)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from renderer.geometry.polygon import CORNERS, FULL, Counts, subtract
+from renderer.geometry.polygon import CORNERS, Counts, subtract
 from renderer.geometry.strips import Strips
 from renderer.kernel import leaf, routine
 from renderer.tables import Floats

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from renderer.kernel import leaf, routine
 from renderer.tables import Floats
 
-CORNERS = 32
-"""Room for a polygon's corners. One that would have more keeps its first, which `overflow` reports."""
+CORNERS = 64
+"""Room for a polygon's corners while it is cut."""
+MOST = 24
+"""Polygons with more corners are kept as two; so much room is left for half-planes, each of which adds one."""
 FULL = -1
 """What a list of polygons says that has run out of room."""
 
@@ -41,7 +43,7 @@ def clip(polygon: Floats, count: int, a: float, b: float, c: float, out: Floats)
 
 @routine
 def clipped(polygon: Floats, count: int, planes: Floats, first: int, last: int, spare: Floats) -> int:
-    """Cut a polygon in place by the half-planes first <= k < last: how many corners it has."""
+    """Cut a polygon in place by the half-planes first <= k < last, no more than CORNERS - MOST: how many corners."""
     for k in range(first, last):
         a, b, c = planes[k, 0], planes[k, 1], planes[k, 2]
         least = a * polygon[0, 0] + b * polygon[0, 1] + c
@@ -54,8 +56,6 @@ def clipped(polygon: Floats, count: int, planes: Floats, first: int, last: int, 
             return 0
         for i in range(count):
             polygon[i, 0], polygon[i, 1] = spare[i, 0], spare[i, 1]
-        if count > CORNERS - 2:
-            return count - 1  # the last corner gives way
     return count
 
 
@@ -105,12 +105,17 @@ def subtract(
                 a, b, c = planes[k, 0], planes[k, 1], planes[k, 2]
                 outside = clip(one, count, -a, -b, -c, two)
                 if outside and area(two, outside) > least:
-                    if n == len(polygons) or outside > CORNERS - 2:
-                        return FULL
-                    for j in range(outside):
-                        polygons[n, j, 0], polygons[n, j, 1] = two[j, 0], two[j, 1]
-                    counts[n] = outside
-                    n += 1
+                    begin = 0
+                    while begin < outside - 2:  # those with many corners in two, along a diagonal
+                        end = min(begin + MOST - 2, outside - 1)
+                        if n == len(polygons):
+                            return FULL
+                        polygons[n, 0, 0], polygons[n, 0, 1] = two[0, 0], two[0, 1]
+                        for j in range(begin + 1, end + 1):
+                            polygons[n, j - begin, 0], polygons[n, j - begin, 1] = two[j, 0], two[j, 1]
+                        counts[n] = end - begin + 1
+                        n += 1
+                        begin = end - 1
                 count = clip(one, count, a, b, c, two)
                 for j in range(count):
                     one[j, 0], one[j, 1] = two[j, 0], two[j, 1]

@@ -27,6 +27,7 @@ CHUNK = np.dtype(
         ("x", "f8"), ("y", "f8"), ("tx", "f8"), ("ty", "f8"),  # origin and tangent: (s, b) are local coordinates
         ("f", "f8"), ("g", "f8"),  # the scale is f + g s
         ("planes", "f8", (6, 3)), ("count", "i8"),  # its half-planes
+        ("radius", "f8"), ("wedge", "f8"),  # of an arc whose scale changes: the centre's b, tan of half its angle; else 0
         ("half", "i8"),  # 1: where b >= 0 alone, -1: b <= 0, 0: both
         ("part", "i8"),
         ("start", "i8"), ("finish", "i8"),  # 1: it may end in a wall there, square
@@ -53,6 +54,7 @@ class Strips(NamedTuple):
     one: Floats  # (CORNERS, 2) for clipping
     two: Floats
     sides: Floats  # (CORNERS, 3) half-planes
+    rims: Floats  # (2, 2, 3) lines of a facet
 
 
 @leaf
@@ -62,6 +64,7 @@ def strips_of() -> Strips:
         np.empty((STRIPS, 4)), np.empty((STRIPS, 3)), np.empty((STRIPS, 5), np.int64),
         np.empty((STRIPS, CORNERS, 2)), np.empty(STRIPS, np.int64), np.empty((WALLS, 4)),
         np.empty((WALLS, 3), np.int64), np.empty((CORNERS, 2)), np.empty((CORNERS, 2)), np.empty((CORNERS, 3)),
+        np.empty((2, 2, 3)),
     )  # fmt: skip
 
 
@@ -82,6 +85,7 @@ def bound_local(chunk: np.void, x: float, y: float, s: float, b: float, c: float
 def begin(chunk: np.void, x: float, y: float, tx: float, ty: float, f: float, g: float, part: int) -> None:
     chunk.x, chunk.y, chunk.tx, chunk.ty, chunk.f, chunk.g, chunk.part = x, y, tx, ty, f, g, part
     chunk.count = chunk.half = chunk.start = chunk.finish = 0
+    chunk.radius = chunk.wedge = 0.0
 
 
 @leaf
@@ -182,6 +186,9 @@ def divide(
         # Chords whose mean leaves the arc by nothing, and their ends and middles by about half of this each.
         turn = min(math.sqrt(12.0 * tolerance / (size + piece.half)), BEND)
         step = piece.length / math.ceil(max(piece.length / (turn * size), 1.0))
+        if groove.scale_kind == SCALE_SINE:  # chunks as long as one another
+            step = min(step, bends(pattern, groove, piece, 0.0, piece.length, tolerance))
+            step = piece.length / math.ceil(piece.length / step - 1e-9)
         # The arc within the rectangle, by the angles of its corners about the centre as seen from its middle.
         mx, my = 0.5 * (rect[0] + rect[2]) - cx, 0.5 * (rect[1] + rect[3]) - cy
         far = 0.5 * math.hypot(rect[2] - rect[0], rect[3] - rect[1])
@@ -205,7 +212,9 @@ def divide(
                 s0, s1 = k * step, (k + 1) * step
                 s = s0
                 while s < s1 - 1e-9 * step:
-                    until = bends(pattern, groove, piece, s, s1, tolerance)
+                    until = s1
+                    if groove.scale_kind != SCALE_SINE:
+                        until = bends(pattern, groove, piece, s, s1, tolerance)
                     if n == len(chunks):
                         return -1
                     chunk = chunks[n]
@@ -219,8 +228,9 @@ def divide(
                     f0, _ = scale_at(pattern.scale_table, groove, piece, s)
                     f1, _ = scale_at(pattern.scale_table, groove, piece, until)
                     long = 2.0 * size * math.tan(0.5 * theta)
-                    g = (f1 - f0) / long
-                    begin(chunk, px, py, tx, ty, 0.5 * (f0 + f1), g, BODY)
+                    begin(chunk, px, py, tx, ty, 0.5 * (f0 + f1), (f1 - f0) / long, BODY)
+                    if f0 != f1:
+                        chunk.radius, chunk.wedge = radius + out, math.tan(0.5 * theta)
                     ux, uy = tangent_at(piece, s)
                     bound(chunk, ux, uy, -ux * cx - uy * cy)
                     ux, uy = tangent_at(piece, until)
@@ -325,6 +335,63 @@ def keep_wall(
 
 
 @leaf
+def rim(chunk: np.void, beta: float, w: float, slope: float, ends: Floats) -> None:
+    """Write the two ends (p, q, w) of the line b = scale * beta, at the height w of the profile, of a chunk with a wedge.
+
+    It is straight from end to end, and facets are two triangles each: so neighbours meet. Lines end at the centre,
+    where the profile is read on along its slope.
+    """
+    reach = abs(chunk.radius) * chunk.wedge
+    for end in range(2):
+        sign = 2.0 * end - 1.0
+        f = chunk.f + sign * chunk.g * reach
+        b = min(f * beta, chunk.radius) if chunk.radius > 0.0 else max(f * beta, chunk.radius)
+        s = sign * abs(chunk.radius - b) * chunk.wedge
+        ends[end, 0], ends[end, 1] = chunk.x + s * chunk.tx - b * chunk.ty, chunk.y + s * chunk.ty + b * chunk.tx
+        ends[end, 2] = f * w + slope * (b - f * beta)
+
+
+@leaf
+def tag_strip(strips: Strips, at: int, corners: int, found: int, facet: int, part: int, rank: int, inner: bool) -> None:
+    polygon, box, tag = strips.polygon[at], strips.box[at], strips.tag[at]
+    strips.count[at] = corners
+    box[0] = box[1] = math.inf
+    box[2] = box[3] = -math.inf
+    for k in range(corners):
+        box[0], box[1] = min(box[0], polygon[k, 0]), min(box[1], polygon[k, 1])
+        box[2], box[3] = max(box[2], polygon[k, 0]), max(box[3], polygon[k, 1])
+    tag[0], tag[1], tag[2], tag[3], tag[4] = found, facet, part, rank, 1 if inner else 0
+
+
+@leaf
+def within(polygon: Floats, count: int, rect: Floats, strips: Strips) -> int:
+    """Cut a polygon by the rectangle: how many corners it has."""
+    sides = strips.sides
+    for k in range(2):
+        sides[2 * k, 0] = sides[2 * k, 1] = sides[2 * k + 1, 0] = sides[2 * k + 1, 1] = 0.0
+        sides[2 * k, k], sides[2 * k, 2] = 1.0, -rect[k]
+        sides[2 * k + 1, k], sides[2 * k + 1, 2] = -1.0, rect[2 + k]
+    return clipped(polygon, count, sides, 0, 4, strips.two)
+
+
+@leaf
+def triangle(chunk: np.void, a: Floats, b: Floats, c: Floats, rect: Floats, strips: Strips, at: int) -> int:
+    """Write strip `at` for a triangle within the chunk and the rectangle: how many corners it has."""
+    ux, uy, uw = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    vx, vy, vw = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    twice = ux * vy - uy * vx
+    if twice <= 1e-12 * (abs(ux) + abs(uy)) * (abs(vx) + abs(vy)):
+        return 0
+    polygon, height = strips.polygon[at], strips.height[at]
+    height[0], height[1] = (uw * vy - uy * vw) / twice, (ux * vw - uw * vx) / twice
+    height[2] = a[2] - height[0] * a[0] - height[1] * a[1]
+    for k in range(2):
+        polygon[0, k], polygon[1, k], polygon[2, k] = a[k], b[k], c[k]
+    count = within(polygon, 3, rect, strips)
+    return clipped(polygon, count, chunk.planes, 0, chunk.count, strips.two) if count else 0
+
+
+@leaf
 def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, stepped: bool, strips: Strips) -> bool:
     """Add the strips of a chunk, its band and its walls. False where there is no room.
 
@@ -355,7 +422,16 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
         # sign (b - (f + g s) beta) >= 0
         sides[k, 0], sides[k, 1] = sign * (bx - g * beta * chunk.tx), sign * (by - g * beta * chunk.ty)
         sides[k, 2] = sign * (bc - g * beta * sc - f * beta)
-    if count:
+    lower, upper = strips.rims[0], strips.rims[1]
+    if chunk.wedge > 0.0:
+        rim(chunk, profile.left, 0.0, 0.0, lower)
+        rim(chunk, profile.right, 0.0, 0.0, upper)
+        for k in range(2):
+            base[0, k], base[1, k], base[2, k], base[3, k] = lower[0, k], lower[1, k], upper[1, k], upper[0, k]
+        count = within(base, 4, rect, strips)
+        if count:
+            count = clipped(base, count, chunk.planes, 0, chunk.count, spare)
+    elif count:
         count = clipped(base, count, sides, 0, 2, spare)
     if count == 0:
         return True
@@ -365,6 +441,21 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
     for i in range(profile.count - 1):
         b0, w0, b1, w1 = points[first + i, 0], points[first + i, 1], points[first + i + 1, 0], points[first + i + 1, 1]
         if b1 <= b0 or (chunk.half > 0 and b1 <= 0.0) or (chunk.half < 0 and b0 >= 0.0):
+            continue
+        slope = (w1 - w0) / (b1 - b0)
+        inner = profile.inner_first <= i < profile.inner_last
+        facet = i if inner or w0 != 0.0 or w1 != 0.0 else -1  # -1: the plane
+        if chunk.wedge > 0.0:
+            if made + profile.count + 2 > STRIPS:
+                return False
+            rim(chunk, b0, w0, slope, lower)
+            rim(chunk, b1, w1, slope, upper)
+            for k in range(2):
+                last = lower[1] if k == 0 else upper[1]
+                corners = triangle(chunk, lower[0], last, upper[1 - k], rect, strips, made)
+                if corners:
+                    tag_strip(strips, made, corners, found, facet, chunk.part, groove.priority, inner)
+                    made += 1
             continue
         polygon = strips.polygon[made]
         for k in range(count):
@@ -376,22 +467,11 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
         corners = clipped(polygon, count, sides, 0, 2, spare)
         if corners == 0:
             continue
-        inner = profile.inner_first <= i < profile.inner_last
-        slope = (w1 - w0) / (b1 - b0)
         level = w0 - slope * b0
-        strips.count[made] = corners
         height = strips.height[made]
         height[0], height[1] = slope * bx + g * level * chunk.tx, slope * by + g * level * chunk.ty
         height[2] = slope * bc + g * level * sc + f * level
-        box, tag = strips.box[made], strips.tag[made]
-        box[0] = box[1] = math.inf
-        box[2] = box[3] = -math.inf
-        for k in range(corners):
-            box[0], box[1] = min(box[0], polygon[k, 0]), min(box[1], polygon[k, 1])
-            box[2], box[3] = max(box[2], polygon[k, 0]), max(box[3], polygon[k, 1])
-        tag[0], tag[1], tag[2], tag[3], tag[4] = found, i, chunk.part, groove.priority, 1 if inner else 0
-        if not inner and w0 == 0.0 and w1 == 0.0:
-            tag[1] = -1  # the plane
+        tag_strip(strips, made, corners, found, facet, chunk.part, groove.priority, inner)
         made += 1
     strips.made[0] = made
 
@@ -415,13 +495,16 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
         edge = j == 0 or last == profile.count - 1
         if not upright and not (stepped and (edge or before != after)):
             continue
-        # where the scale is above 0
-        wa, wb = f + g * sa, f + g * sb
+        if chunk.wedge > 0.0:
+            rim(chunk, b, 0.0, 0.0, lower)
+        else:
+            for k in range(2):
+                along = sa if k == 0 else sb
+                off = (f + g * along) * b
+                lower[k, 0], lower[k, 1] = chunk.x + along * chunk.tx + off * bx, chunk.y + along * chunk.ty + off * by
         walls = keep_wall(
             strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, chunk.half, bx, by, bc, rect,
-            chunk.x + sa * chunk.tx + wa * b * bx, chunk.y + sa * chunk.ty + wa * b * by,
-            chunk.x + sb * chunk.tx + wb * b * bx, chunk.y + sb * chunk.ty + wb * b * by,
-            near, found, j if upright else SIDE, chunk.part,
+            lower[0, 0], lower[0, 1], lower[1, 0], lower[1, 1], near, found, j if upright else SIDE, chunk.part,
         )  # fmt: skip
     for end in range(2):
         if (chunk.start if end == 0 else chunk.finish) == 0:
