@@ -88,7 +88,7 @@ def seen_of(lights: int) -> Seen:
 
 @leaf
 def needed(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], rect: Floats) -> bool:
-    """Write the rectangle p0, q0, p1, q1 in which all lies that may be seen through a footprint, hide it or shade it."""
+    """Write p0, q0, p1, q1, between which all lies that may be seen through a footprint, hide it or shade it."""
     high, low, dw = pattern.height, -pattern.depth, frame.eye[2]
     rect[0] = rect[1] = math.inf
     rect[2] = rect[3] = -math.inf
@@ -130,16 +130,21 @@ def make(
         rect[0], rect[1], rect[2], rect[3] = want[0] - more, want[1] - more, want[2] + more, want[3] + more
         count = find(pattern, found, rect[0] - m, rect[1] - m, rect[2] + m, rect[3] + m, FEW[k])
         room = count >= 0
+        for i in range(max(count, 0)):  # what overhangs is no height field
+            profile = pattern.grooves[pattern.pieces[found.piece[i]].groove].profile
+            room = room and (
+                len(pattern.part_first) == 0 or pattern.part_first[profile] == pattern.part_first[profile + 1]
+            )
         strips.made[0] = strips.made[1] = strips.made[2] = 0
         for i in range(max(count, 0)):
+            if not room:
+                break
             chunks = divide(
                 pattern, found.piece[i], found.shift[i, 0], found.shift[i, 1], rect, CHORD * size, strips.chunks
             )
             room = room and chunks >= 0
             for j in range(chunks):
                 room = room and lay(pattern, found.piece[i], i, strips.chunks[j], rect, stepped, strips)
-            if not room:
-                break
         if room and envelope(strips, rect, pattern.height + pattern.depth, faces):
             return True
     return False
@@ -147,7 +152,7 @@ def make(
 
 @leaf
 def look(
-    pattern: Pattern, frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen
+    frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen
 ) -> bool:
     """See the faces from a footprint's eye: fill `seen`. False where the eye is on the plane."""
     ray, back = seen.ray, seen.back
@@ -210,7 +215,7 @@ def look(
         box = seen.box[j]
         box[0] = box[1] = math.inf
         box[2] = box[3] = -math.inf
-        for i in range(faces.count[j]):
+        for i in range(faces.corners[j]):
             x0, x1, x2 = faces.corner[j, i, 0] - d0, faces.corner[j, i, 1] - d1, faces.corner[j, i, 2] - d2
             corner = seen.corner[j, i]
             for k in range(3):
@@ -227,7 +232,7 @@ def look(
 @leaf
 def halves_of(s: int, j: int, faces: Faces, seen: Seen) -> bool:
     """Make the half-planes of what face j keeps from source s: in front of it, within its edges seen from there."""
-    count, source, ray = faces.count[j], seen.source[s], seen.ray
+    count, source, ray = faces.corners[j], seen.source[s], seen.ray
     eye = seen.source[len(seen.source) - 1]
     first = seen.made[0]
     if first + count + 1 > HALVES:
@@ -319,7 +324,7 @@ def show(f: int, footprint: np.void, faces: Faces, seen: Seen) -> int:
         return 0
     # homogeneous, so that what lies behind the eye does no harm
     one, two = seen.one, seen.two
-    count = faces.count[f]
+    count = faces.corners[f]
     for i in range(count):
         c = seen.corner[f, i]
         one[i, 0], one[i, 1], one[i, 2] = (c[0] - x0 * c[2]) / size, (c[1] - y0 * c[2]) / size, c[2]
@@ -437,7 +442,7 @@ def area_sampling(
             if not usable:
                 continue
         if looked != footprint.frame:
-            if not look(pattern, frame, view, footprint, lights, faces, seen):
+            if not look(frame, view, footprint, lights, faces, seen):
                 continue
             looked = footprint.frame
         red = green = blue = whole = 0.0

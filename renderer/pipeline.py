@@ -315,6 +315,7 @@ def warm_up(*, geometry: bool = False, textures: bool = False, meshes: bool = Fa
     begin = time.perf_counter()
     if "analytic" not in _warm:
         _try("line", {"type": "sphere", "radius": 1})
+        _try("area", {"type": "sphere", "radius": 1})
         _try("csg", {"type": "sphere", "radius": 1})
         _READY.touch()
         _warm.add("analytic")

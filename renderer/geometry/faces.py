@@ -18,7 +18,7 @@ import numpy as np
 
 from renderer.geometry.polygon import CORNERS, Counts, subtract
 from renderer.geometry.strips import Strips
-from renderer.kernel import leaf, routine
+from renderer.kernel import callee, leaf
 from renderer.tables import Floats
 
 FACES = 4096
@@ -32,7 +32,7 @@ class Faces(NamedTuple):
 
     made: Counts  # (1,)
     corner: Floats  # (FACES, CORNERS, 3) (p, q, w), anticlockwise from outside
-    count: Counts  # (FACES,)
+    corners: Counts  # (FACES,) of each
     plane: Floats  # (FACES, 4) n, c: n . X + c = 0, positive outside
     box: Floats  # (FACES, 6) lowest and highest p, q, w
     tag: Counts  # (FACES, 4) place of the piece in `Nearby` (-1: the plane), facet, part, 1: a wall
@@ -95,9 +95,9 @@ def envelope(strips: Strips, rect: Floats, tall: float, faces: Faces) -> bool:
                 if n == 0:
                     break
         else:
-            for k in range(strips.count[i]):
+            for k in range(strips.corners[i]):
                 polygon[k, 0], polygon[k, 1] = strips.polygon[i, k, 0], strips.polygon[i, k, 1]
-            faces.part_count[0] = strips.count[i]
+            faces.part_count[0] = strips.corners[i]
             box, height, rank, inner = strips.box[i], strips.height[i], strips.tag[i, 3], strips.tag[i, 4]
             for j in range(n_strips):
                 other = strips.box[j]
@@ -106,7 +106,7 @@ def envelope(strips: Strips, rect: Floats, tall: float, faces: Faces) -> bool:
                 rank_j, inner_j = strips.tag[j, 3], strips.tag[j, 4]
                 if rank_j < rank or (rank_j == rank and inner_j < inner):
                     continue
-                k = edges(strips.polygon[j], strips.count[j], short, planes)
+                k = edges(strips.polygon[j], strips.corners[j], short, planes)
                 if k < 3:
                     continue
                 if rank_j == rank and inner_j == inner:
@@ -115,7 +115,7 @@ def envelope(strips: Strips, rect: Floats, tall: float, faces: Faces) -> bool:
                     b = sign * (height[1] - strips.height[j, 1])
                     c = sign * (height[2] - strips.height[j, 2])
                     most = low = a * strips.polygon[i, 0, 0] + b * strips.polygon[i, 0, 1] + c
-                    for m in range(1, strips.count[i]):
+                    for m in range(1, strips.corners[i]):
                         d = a * strips.polygon[i, m, 0] + b * strips.polygon[i, m, 1] + c
                         most, low = max(most, d), min(low, d)
                     if most <= tie and low >= -tie:  # the same facet twice
@@ -142,7 +142,7 @@ def envelope(strips: Strips, rect: Floats, tall: float, faces: Faces) -> bool:
                 p, q = faces.part[m, k, 0], faces.part[m, k, 1]
                 faces.corner[at, k, 0], faces.corner[at, k, 1] = p, q
                 faces.corner[at, k, 2] = h0 * p + h1 * q + h2
-            faces.count[at] = faces.part_count[m]
+            faces.corners[at] = faces.part_count[m]
             faces.plane[at, 0], faces.plane[at, 1], faces.plane[at, 2], faces.plane[at, 3] = -h0, -h1, 1.0, -h2
             for k in range(3):
                 faces.tag[at, k] = strips.tag[i, k] if i >= 0 else FLAT_PLANE
@@ -151,10 +151,10 @@ def envelope(strips: Strips, rect: Floats, tall: float, faces: Faces) -> bool:
             faces.tag[at, 3] = 0
             enclose(faces, at)
             faces.made[0] = at + 1
+    room = True
     for i in range(strips.made[2]):
-        if not raise_wall(strips, i, 1e-9 * size, tie, faces):
-            return False
-    return True
+        room = room and raise_wall(strips, i, 1e-9 * size, tie, faces)
+    return room
 
 
 @leaf
@@ -162,7 +162,7 @@ def enclose(faces: Faces, at: int) -> None:
     box = faces.box[at]
     for k in range(3):
         box[k], box[3 + k] = math.inf, -math.inf
-        for j in range(faces.count[at]):
+        for j in range(faces.corners[at]):
             box[k], box[3 + k] = min(box[k], faces.corner[at, j, k]), max(box[3 + k], faces.corner[at, j, k])
 
 
@@ -200,7 +200,7 @@ def top_at(faces: Faces, n: int, t: float, side: int) -> int:
     return best
 
 
-@routine
+@callee
 def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces) -> bool:
     """Add what stands along one of the lines `strips.wall`. False where there is no room."""
     x0, y0, x1, y1 = strips.wall[wall, 0], strips.wall[wall, 1], strips.wall[wall, 2], strips.wall[wall, 3]
@@ -214,7 +214,7 @@ def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces)
             continue
         if max(y0, y1) < box[1] - near or min(y0, y1) > box[3] + near:
             continue
-        polygon, count = strips.polygon[i], strips.count[i]
+        polygon, count = strips.polygon[i], strips.corners[i]
         low, high = 0.0, 1.0
         for k in range(count):
             m = k + 1 if k + 1 < count else 0
@@ -304,7 +304,7 @@ def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces)
         corner[1, 0], corner[1, 1], corner[1, 2] = bx, by, min(lb, rb)
         corner[2, 0], corner[2, 1], corner[2, 2] = bx, by, max(lb, rb)
         corner[3, 0], corner[3, 1], corner[3, 2] = ax, ay, max(la, ra)
-        faces.count[at] = 4
+        faces.corners[at] = 4
         sign = 1.0 if to_right else -1.0
         faces.plane[at, 0], faces.plane[at, 1], faces.plane[at, 2] = sign * dy, -sign * dx, 0.0
         faces.plane[at, 3] = -sign * (dy * x0 - dx * y0)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from renderer.geometry.pieces import point_at, scale_at, tangent_at
 from renderer.geometry.polygon import CORNERS, Counts, clipped
 from renderer.geometry.spans import BODY, CAP_FINISH, CAP_START, END, SIDE, TAIL_FINISH, TAIL_START, next_stop
-from renderer.kernel import leaf, routine
+from renderer.kernel import callee, leaf
 from renderer.tables import CORNER, FLAT, PROFILE, SCALE_CONSTANT, SCALE_SINE, Floats, Pattern
 
 STRIPS, WALLS, CHUNKS = 1024, 1024, 512  # room for those of one surface
@@ -27,7 +27,7 @@ CHUNK = np.dtype(
         ("x", "f8"), ("y", "f8"), ("tx", "f8"), ("ty", "f8"),  # origin and tangent: (s, b) are local coordinates
         ("f", "f8"), ("g", "f8"),  # the scale is f + g s
         ("planes", "f8", (6, 3)), ("count", "i8"),  # its half-planes
-        ("radius", "f8"), ("wedge", "f8"),  # of an arc whose scale changes: the centre's b, tan of half its angle; else 0
+        ("radius", "f8"), ("wedge", "f8"),  # arcs of changing scale: the centre's b, tan of half the angle
         ("half", "i8"),  # 1: where b >= 0 alone, -1: b <= 0, 0: both
         ("part", "i8"),
         ("start", "i8"), ("finish", "i8"),  # 1: it may end in a wall there, square
@@ -43,7 +43,7 @@ class Strips(NamedTuple):
     made: Counts  # (3,) how many strips, bands and walls there are; -1: too many
     chunks: NDArray[np.void]  # (CHUNKS,) CHUNK
     polygon: Floats  # (STRIPS, CORNERS, 2)
-    count: Counts  # (STRIPS,)
+    corners: Counts  # (STRIPS,) of each
     box: Floats  # (STRIPS, 4) p0, q0, p1, q1
     height: Floats  # (STRIPS, 3) w = h0 p + h1 q + h2
     tag: Counts  # (STRIPS, 5) place of the piece in `Nearby`, facet, part, rank, whether the facet is internal
@@ -291,7 +291,7 @@ def divide(
     return n
 
 
-@routine
+@callee
 def keep_wall(
     walls: Floats, tags: Counts, n: int, planes: Floats, count: int, half: int, bx: float, by: float, bc: float,
     rect: Floats, x0: float, y0: float, x1: float, y1: float, near: float, found: int, facet: int, part: int,
@@ -336,7 +336,7 @@ def keep_wall(
 
 @leaf
 def rim(chunk: np.void, beta: float, w: float, slope: float, ends: Floats) -> None:
-    """Write the two ends (p, q, w) of the line b = scale * beta, at the height w of the profile, of a chunk with a wedge.
+    """Write the ends (p, q, w) of the line b = scale * beta, at the height w of the profile, of a chunk with a wedge.
 
     It is straight from end to end, and facets are two triangles each: so neighbours meet. Lines end at the centre,
     where the profile is read on along its slope.
@@ -354,7 +354,7 @@ def rim(chunk: np.void, beta: float, w: float, slope: float, ends: Floats) -> No
 @leaf
 def tag_strip(strips: Strips, at: int, corners: int, found: int, facet: int, part: int, rank: int, inner: bool) -> None:
     polygon, box, tag = strips.polygon[at], strips.box[at], strips.tag[at]
-    strips.count[at] = corners
+    strips.corners[at] = corners
     box[0] = box[1] = math.inf
     box[2] = box[3] = -math.inf
     for k in range(corners):
@@ -522,7 +522,7 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
         symmetric = symmetric and even <= 1e-12 * (profile.right - profile.left)
     if cap and not symmetric:  # along its mitres
         for k in range(2):
-            a, b, c = chunk.planes[k, 0], chunk.planes[k, 1], chunk.planes[k, 2]
+            a, b = chunk.planes[k, 0], chunk.planes[k, 1]
             dx, dy = (-b, a) if k == 1 else (b, -a)  # outwards: the strip is on the inner side
             if dx * bx + dy * by < 0.0:
                 dx, dy = -dx, -dy
