@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.domain import AXES, Domain, aim, domain_of, holds, settle, spread
 from renderer.geometry.faces import FACES, Faces, envelope, faces_of
 from renderer.geometry.polygon import CORNERS, Counts, area, subtract
 from renderer.geometry.query import Nearby, find, nearby
@@ -43,7 +44,9 @@ LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 1e-6  # the shares of a footprint sum to one within this, or it is left to another method
 CHORDED = 4e-3  # ... where chords stand for arcs and steps for scales: the shares are then divided by their sum
 AROUND = (7.0, 2.0, 0.0)  # how much more than a footprint needs the faces are made for, in its sizes
+BEYOND = (0.5, 0.1, 0.0)  # ... or in the sizes of what it needs
 FEW = (12, 32, 512)  # while no more pieces than this are near
+BLOCK = 8  # footprints are taken in squares of so many pixels
 
 
 class Seen(NamedTuple):
@@ -87,48 +90,22 @@ def seen_of(lights: int) -> Seen:
 
 
 @leaf
-def needed(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], rect: Floats) -> bool:
-    """Write p0, q0, p1, q1, between which all lies that may be seen through a footprint, hide it or shade it."""
-    high, low, dw = pattern.height, -pattern.depth, frame.eye[2]
-    rect[0] = rect[1] = math.inf
-    rect[2] = rect[3] = -math.inf
-    top = min(high, dw)
-    for k in range(4):
-        cp, cq = on_plane(view, float(k & 1), float(k >> 1))
-        gp, gq = (frame.eye[0] - cp) / dw, (frame.eye[1] - cq) / dw
-        for w in (low, top):
-            rect[0], rect[2] = min(rect[0], cp + w * gp), max(rect[2], cp + w * gp)
-            rect[1], rect[3] = min(rect[1], cq + w * gq), max(rect[3], cq + w * gq)
-    p0, q0, p1, q1 = rect[0], rect[1], rect[2], rect[3]
-    for l in range(len(lights)):
-        d = light_to_pattern(frame, lights[l])
-        if d[2] > 0.0 and d[3] == 0.0:
-            gp, gq = (high - low) * d[0] / d[2], (high - low) * d[1] / d[2]
-            rect[0], rect[2] = min(rect[0], p0 + gp), max(rect[2], p1 + gp)
-            rect[1], rect[3] = min(rect[1], q0 + gq), max(rect[3], q1 + gq)
-        elif d[2] > 0.0:
-            way = min((high - low) / (d[2] - low), 1.0)
-            rect[0], rect[2] = min(rect[0], p0 + way * (d[0] - p0)), max(rect[2], p1 + way * (d[0] - p1))
-            rect[1], rect[3] = min(rect[1], q0 + way * (d[1] - q0)), max(rect[3], q1 + way * (d[1] - q1))
-    return rect[2] - rect[0] < math.inf and rect[3] - rect[1] < math.inf
-
-
-@leaf
 def make(
-    pattern: Pattern, rect: Floats, size: float, want: Floats, found: Nearby, strips: Strips, faces: Faces
-) -> bool:
-    """Make the faces over `want`, and somewhat more where little is near: `rect`. False where there is too much.
+    pattern: Pattern, domain: Domain, size: float, slab: Floats, found: Nearby, strips: Strips, faces: Faces
+) -> bool:  # fmt: skip
+    """Make the faces of what a footprint needs, `slab`, and of somewhat more where little is near: `domain`.
 
-    size: of the footprint, pattern units.
+    size: of the footprint, pattern units. False where there is too much.
     """
     m = pattern.reach
     stepped = pattern.height > 0.0
     for groove in pattern.grooves:
         stepped = stepped or groove.priority > 0
     for k in range(len(AROUND)):
-        more = AROUND[k] * size
-        rect[0], rect[1], rect[2], rect[3] = want[0] - more, want[1] - more, want[2] + more, want[3] + more
-        count = find(pattern, found, rect[0] - m, rect[1] - m, rect[2] + m, rect[3] + m, FEW[k])
+        more = max(AROUND[k] * size, BEYOND[k] * max(slab[0, 1] - slab[0, 0], slab[1, 1] - slab[1, 0]))
+        settle(domain, slab, more)
+        rim = domain.slab
+        count = find(pattern, found, rim[0, 0] - m, rim[1, 0] - m, rim[0, 1] + m, rim[1, 1] + m, FEW[k])
         room = count >= 0
         for i in range(max(count, 0)):  # what overhangs is no height field
             profile = pattern.grooves[pattern.pieces[found.piece[i]].groove].profile
@@ -140,20 +117,18 @@ def make(
             if not room:
                 break
             chunks = divide(
-                pattern, found.piece[i], found.shift[i, 0], found.shift[i, 1], rect, CHORD * size, strips.chunks
+                pattern, found.piece[i], found.shift[i, 0], found.shift[i, 1], rim, CHORD * size, strips.chunks
             )
             room = room and chunks >= 0
             for j in range(chunks):
-                room = room and lay(pattern, found.piece[i], i, strips.chunks[j], rect, stepped, strips)
-        if room and envelope(strips, rect, pattern.height + pattern.depth, faces):
+                room = room and lay(pattern, found.piece[i], i, strips.chunks[j], domain, stepped, strips)
+        if room and envelope(strips, domain, pattern.height + pattern.depth, faces):
             return True
     return False
 
 
 @leaf
-def look(
-    frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen
-) -> bool:
+def look(frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen) -> bool:
     """See the faces from a footprint's eye: fill `seen`. False where the eye is on the plane."""
     ray, back = seen.ray, seen.back
     d0, d1, d2 = frame.eye[0], frame.eye[1], frame.eye[2]
@@ -398,6 +373,12 @@ def is_bent(pattern: Pattern, f: int, found: Nearby, faces: Faces) -> bool:
     return piece.curvature != 0.0 or pattern.grooves[piece.groove].scale_kind != SCALE_CONSTANT
 
 
+def in_blocks(footprints: NDArray[np.void], chosen: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The footprints `chosen` in the order in which neighbours follow one another: the same faces serve them."""
+    x, y = footprints["x"][chosen], footprints["y"][chosen]
+    return chosen[np.lexsort((x, y, x // BLOCK, y // BLOCK))]
+
+
 @kernel
 def area_sampling(
     pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void],
@@ -409,16 +390,14 @@ def area_sampling(
     NOT_MINE where too much is near, or where the shares do not sum to one. slots: rows of `materials` for the
     pattern's facets, the object's own first.
     """
-    owned = nearby(pattern, CAPACITY), strips_of(), faces_of(), seen_of(len(lighting.lights))
+    owned = nearby(pattern, CAPACITY), strips_of(), faces_of(), seen_of(len(lighting.lights)), domain_of()
     found, strips, faces, seen = borrow(owned[0]), borrow(owned[1]), borrow(owned[2]), borrow(owned[3])
+    domain = borrow(owned[4])
     pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
     lights = lighting.lights
     eye = len(lights)
-    rects = np.empty((2, 4))
-    want, rect = rects[0], rects[1]
-    rect[0] = rect[1] = math.inf
-    rect[2] = rect[3] = -math.inf
+    slab = np.empty((AXES, 2))
     made_size, looked, usable = 0.0, -1, False
     distant = True
     for l in range(len(lights)):
@@ -428,16 +407,19 @@ def area_sampling(
         frame = frames[footprint.frame]
         view = view_of(footprint, frame, camera)
         method[index] = NOT_MINE
-        if frame.eye[2] <= 0.0 or not needed(pattern, frame, view, lights, want):
+        if frame.eye[2] <= 0.0:
             continue
         p0, q0 = on_plane(view, 0.0, 0.0)
         p1, q1 = on_plane(view, 1.0, 0.0)
         p2, q2 = on_plane(view, 0.0, 1.0)
         size = max(math.hypot(p1 - p0, q1 - q0), math.hypot(p2 - p0, q2 - q0))
         thin = abs((p1 - p0) * (q2 - q0) - (p2 - p0) * (q1 - q0)) / size
-        held = want[0] >= rect[0] and want[1] >= rect[1] and want[2] <= rect[2] and want[3] <= rect[3]
-        if not held or not usable or not 0.5 * made_size <= thin <= 2.0 * made_size:
-            usable = make(pattern, rect, thin, want, found, strips, faces)
+        fits = usable and 0.5 * made_size <= thin <= 2.0 * made_size and domain.made[0] > 0
+        fits = fits and spread(pattern, frame, view, lights, domain, slab) and holds(domain, slab)
+        if not fits:
+            aim(frame, view, lights, domain)
+            usable = spread(pattern, frame, view, lights, domain, slab)
+            usable = usable and make(pattern, domain, thin, slab, found, strips, faces)
             made_size, looked = thin, -1
             if not usable:
                 continue

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 import schema
 from renderer import CACHE, body, film, relief, shading
-from renderer.area import area_sampling
+from renderer.area import area_sampling, in_blocks
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import csg
 from renderer.errors import Cancelled, Fault, RenderError
@@ -136,7 +136,7 @@ class Frame:
             relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
             return timed("relief", start)
         if settings.method == "area" and pattern is not BARE:
-            area_sampling(pattern, seen.footprints, chosen, *rest)
+            area_sampling(pattern, seen.footprints, in_blocks(seen.footprints, chosen), *rest)
             timed("area", start)
         else:
             line(MODES.get(settings.method, LOOSE), pattern, seen.footprints, chosen, *rest)

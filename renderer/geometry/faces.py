@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from renderer.geometry.domain import Domain
 from renderer.geometry.polygon import CORNERS, Counts, subtract
 from renderer.geometry.strips import Strips
 from renderer.kernel import callee, leaf
@@ -28,7 +29,7 @@ FLAT_PLANE = -1  # the tag of the base plane's faces
 
 
 class Faces(NamedTuple):
-    """Convex faces of the solid's surface above one rectangle; memory of one thread."""
+    """Convex faces of the solid's surface above one domain; memory of one thread."""
 
     made: Counts  # (1,)
     corner: Floats  # (FACES, CORNERS, 3) (p, q, w), anticlockwise from outside
@@ -69,13 +70,13 @@ def edges(polygon: Floats, count: int, least: float, planes: Floats) -> int:
 
 
 @leaf
-def envelope(strips: Strips, rect: Floats, tall: float, faces: Faces) -> bool:
+def envelope(strips: Strips, domain: Domain, tall: float, faces: Faces) -> bool:
     """Fill `faces` with what of the strips and of the plane is surface. False where there is no room.
 
     tall: the height from the lowest to the highest point of the pattern.
     """
     n_strips, n_bands = strips.made[0], strips.made[1]
-    size = max(rect[2] - rect[0], rect[3] - rect[1])
+    size = max(domain.slab[0, 1] - domain.slab[0, 0], domain.slab[1, 1] - domain.slab[1, 0])
     short, least, tie = 1e-12 * size, 1e-15 * size * size, 1e-10 * tall
     planes = strips.sides
     faces.made[0] = 0
@@ -83,9 +84,9 @@ def envelope(strips: Strips, rect: Floats, tall: float, faces: Faces) -> bool:
         polygon = faces.part[0]
         n = 1
         if i < 0:
-            polygon[0, 0], polygon[0, 1], polygon[1, 0], polygon[1, 1] = rect[0], rect[1], rect[2], rect[1]
-            polygon[2, 0], polygon[2, 1], polygon[3, 0], polygon[3, 1] = rect[2], rect[3], rect[0], rect[3]
-            faces.part_count[0] = 4
+            for k in range(domain.made[1]):
+                polygon[k, 0], polygon[k, 1] = domain.outline[k, 0], domain.outline[k, 1]
+            faces.part_count[0] = domain.made[1]
             for j in range(n_bands):
                 k = edges(strips.band[j], strips.band_count[j], short, planes)
                 if k >= 3:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.domain import Domain
 from renderer.geometry.pieces import point_at, scale_at, tangent_at
 from renderer.geometry.polygon import CORNERS, Counts, clipped
 from renderer.geometry.spans import BODY, CAP_FINISH, CAP_START, END, SIDE, TAIL_FINISH, TAIL_START, next_stop
@@ -38,7 +39,7 @@ CHUNK = np.dtype(
 
 
 class Strips(NamedTuple):
-    """The strips of one rectangle of the plane, and where walls may stand between them; memory of one thread."""
+    """The strips within one domain of the plane, and where walls may stand between them; memory of one thread."""
 
     made: Counts  # (3,) how many strips, bands and walls there are; -1: too many
     chunks: NDArray[np.void]  # (CHUNKS,) CHUNK
@@ -120,9 +121,9 @@ def bends(pattern: Pattern, groove: np.void, piece: np.void, s: float, high: flo
 
 @leaf
 def divide(
-    pattern: Pattern, item: int, dx: float, dy: float, rect: Floats, tolerance: float, chunks: NDArray[np.void]
+    pattern: Pattern, item: int, dx: float, dy: float, slab: Floats, tolerance: float, chunks: NDArray[np.void]
 ) -> int:
-    """Write the chunks of a piece that may reach the rectangle p0, q0, p1, q1: how many; -1: too many."""
+    """Write the chunks of a piece that may reach the domain with these slabs: how many; -1: too many."""
     piece = pattern.pieces[item]
     groove = pattern.grooves[piece.groove]
     profile = pattern.profiles[groove.profile]
@@ -135,7 +136,7 @@ def divide(
         x, y, tx, ty = piece.x + dx, piece.y + dy, piece.tx, piece.ty
         low, high = math.inf, -math.inf
         for k in range(4):
-            cx, cy = rect[2 * (k & 1)], rect[2 * (k >> 1) + 1]
+            cx, cy = slab[0, k & 1], slab[1, k >> 1]
             s = (cx - x) * tx + (cy - y) * ty
             low, high = min(low, s), max(high, s)
         s = max(low, -4.0 * pattern.reach)
@@ -189,9 +190,9 @@ def divide(
         if groove.scale_kind == SCALE_SINE:  # chunks as long as one another
             step = min(step, bends(pattern, groove, piece, 0.0, piece.length, tolerance))
             step = piece.length / math.ceil(piece.length / step - 1e-9)
-        # The arc within the rectangle, by the angles of its corners about the centre as seen from its middle.
-        mx, my = 0.5 * (rect[0] + rect[2]) - cx, 0.5 * (rect[1] + rect[3]) - cy
-        far = 0.5 * math.hypot(rect[2] - rect[0], rect[3] - rect[1])
+        # The arc within the domain, by the angles of its corners about the centre as seen from its middle.
+        mx, my = 0.5 * (slab[0, 0] + slab[0, 1]) - cx, 0.5 * (slab[1, 0] + slab[1, 1]) - cy
+        far = 0.5 * math.hypot(slab[0, 1] - slab[0, 0], slab[1, 1] - slab[1, 0])
         at, around = 0.0, math.pi
         if math.hypot(mx, my) > far:
             tx, ty = tangent_at(piece, 0.5 * piece.length)
@@ -294,25 +295,20 @@ def divide(
 @callee
 def keep_wall(
     walls: Floats, tags: Counts, n: int, planes: Floats, count: int, half: int, bx: float, by: float, bc: float,
-    rect: Floats, x0: float, y0: float, x1: float, y1: float, near: float, found: int, facet: int, part: int,
+    domain: Domain, x0: float, y0: float, x1: float, y1: float, near: float, found: int, facet: int, part: int,
 ) -> int:  # fmt: skip
-    """Add the part of a line from (x0, y0) to (x1, y1) that is within the half-planes and the rectangle: how many."""
+    """Add the part of a line from (x0, y0) to (x1, y1) that is within the half-planes and the domain: how many."""
     low, high = 0.0, 1.0
-    for k in range(count + 5):
+    for k in range(count + 1 + 2 * domain.made[0]):
         if k < count:
             a, b, c = planes[k, 0], planes[k, 1], planes[k, 2]
         elif k == count:
             if half == 0:
                 continue
             a, b, c = half * bx, half * by, half * bc
-        elif k == count + 1:
-            a, b, c = 1.0, 0.0, -rect[0]
-        elif k == count + 2:
-            a, b, c = 0.0, 1.0, -rect[1]
-        elif k == count + 3:
-            a, b, c = -1.0, 0.0, rect[2]
         else:
-            a, b, c = 0.0, -1.0, rect[3]
+            i = k - count - 1
+            a, b, c = domain.planes[i, 0], domain.planes[i, 1], domain.planes[i, 2]
         long = math.hypot(a, b)
         d0, d1 = (a * x0 + b * y0 + c) / long, (a * x1 + b * y1 + c) / long
         if abs(d0) <= near and abs(d1) <= near:
@@ -364,19 +360,14 @@ def tag_strip(strips: Strips, at: int, corners: int, found: int, facet: int, par
 
 
 @leaf
-def within(polygon: Floats, count: int, rect: Floats, strips: Strips) -> int:
-    """Cut a polygon by the rectangle: how many corners it has."""
-    sides = strips.sides
-    for k in range(2):
-        sides[2 * k, 0] = sides[2 * k, 1] = sides[2 * k + 1, 0] = sides[2 * k + 1, 1] = 0.0
-        sides[2 * k, k], sides[2 * k, 2] = 1.0, -rect[k]
-        sides[2 * k + 1, k], sides[2 * k + 1, 2] = -1.0, rect[2 + k]
-    return clipped(polygon, count, sides, 0, 4, strips.two)
+def within(polygon: Floats, count: int, domain: Domain, strips: Strips) -> int:
+    """Cut a polygon by the domain: how many corners it has."""
+    return clipped(polygon, count, domain.planes, 0, 2 * domain.made[0], strips.two)
 
 
 @leaf
-def triangle(chunk: np.void, a: Floats, b: Floats, c: Floats, rect: Floats, strips: Strips, at: int) -> int:
-    """Write strip `at` for a triangle within the chunk and the rectangle: how many corners it has."""
+def triangle(chunk: np.void, a: Floats, b: Floats, c: Floats, domain: Domain, strips: Strips, at: int) -> int:
+    """Write strip `at` for a triangle within the chunk and the domain: how many corners it has."""
     ux, uy, uw = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     vx, vy, vw = c[0] - a[0], c[1] - a[1], c[2] - a[2]
     twice = ux * vy - uy * vx
@@ -387,12 +378,12 @@ def triangle(chunk: np.void, a: Floats, b: Floats, c: Floats, rect: Floats, stri
     height[2] = a[2] - height[0] * a[0] - height[1] * a[1]
     for k in range(2):
         polygon[0, k], polygon[1, k], polygon[2, k] = a[k], b[k], c[k]
-    count = within(polygon, 3, rect, strips)
+    count = within(polygon, 3, domain, strips)
     return clipped(polygon, count, chunk.planes, 0, chunk.count, strips.two) if count else 0
 
 
 @leaf
-def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, stepped: bool, strips: Strips) -> bool:
+def lay(pattern: Pattern, item: int, found: int, chunk: np.void, domain: Domain, stepped: bool, strips: Strips) -> bool:
     """Add the strips of a chunk, its band and its walls. False where there is no room.
 
     stepped: heights of others may end at this groove's facets and band.
@@ -408,11 +399,12 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
     if made + profile.count > STRIPS or bands == STRIPS:
         return False
 
-    # its part of the rectangle, and of that the band
+    # its part of the domain, and of that the band
     base, spare = strips.band[bands], strips.two
-    base[0, 0], base[0, 1], base[1, 0], base[1, 1] = rect[0], rect[1], rect[2], rect[1]
-    base[2, 0], base[2, 1], base[3, 0], base[3, 1] = rect[2], rect[3], rect[0], rect[3]
-    count = clipped(base, 4, chunk.planes, 0, chunk.count, spare)
+    count = domain.made[1]
+    for k in range(count):
+        base[k, 0], base[k, 1] = domain.outline[k, 0], domain.outline[k, 1]
+    count = clipped(base, count, chunk.planes, 0, chunk.count, spare)
     sides = strips.sides
     if count and chunk.half != 0:
         sides[0, 0], sides[0, 1], sides[0, 2] = chunk.half * bx, chunk.half * by, chunk.half * bc
@@ -428,7 +420,7 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
         rim(chunk, profile.right, 0.0, 0.0, upper)
         for k in range(2):
             base[0, k], base[1, k], base[2, k], base[3, k] = lower[0, k], lower[1, k], upper[1, k], upper[0, k]
-        count = within(base, 4, rect, strips)
+        count = within(base, 4, domain, strips)
         if count:
             count = clipped(base, count, chunk.planes, 0, chunk.count, spare)
     elif count:
@@ -452,7 +444,7 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
             rim(chunk, b1, w1, slope, upper)
             for k in range(2):
                 last = lower[1] if k == 0 else upper[1]
-                corners = triangle(chunk, lower[0], last, upper[1 - k], rect, strips, made)
+                corners = triangle(chunk, lower[0], last, upper[1 - k], domain, strips, made)
                 if corners:
                     tag_strip(strips, made, corners, found, facet, chunk.part, groove.priority, inner)
                     made += 1
@@ -476,9 +468,10 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
     strips.made[0] = made
 
     walls = strips.made[2]
-    near = 1e-9 * (rect[2] - rect[0] + rect[3] - rect[1])
-    far = math.hypot(rect[2] - rect[0], rect[3] - rect[1])
-    middle = chunk.tx * (0.5 * (rect[0] + rect[2]) - chunk.x) + chunk.ty * (0.5 * (rect[1] + rect[3]) - chunk.y)
+    p0, p1, q0, q1 = domain.slab[0, 0], domain.slab[0, 1], domain.slab[1, 0], domain.slab[1, 1]
+    near = 1e-9 * (p1 - p0 + q1 - q0)
+    far = math.hypot(p1 - p0, q1 - q0)
+    middle = chunk.tx * (0.5 * (p0 + p1) - chunk.x) + chunk.ty * (0.5 * (q0 + q1) - chunk.y)
     sa, sb = middle - far, middle + far
     for j in range(profile.count):
         b = points[first + j, 0]
@@ -503,7 +496,7 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
                 off = (f + g * along) * b
                 lower[k, 0], lower[k, 1] = chunk.x + along * chunk.tx + off * bx, chunk.y + along * chunk.ty + off * by
         walls = keep_wall(
-            strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, chunk.half, bx, by, bc, rect,
+            strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, chunk.half, bx, by, bc, domain,
             lower[0, 0], lower[0, 1], lower[1, 0], lower[1, 1], near, found, j if upright else SIDE, chunk.part,
         )  # fmt: skip
     for end in range(2):
@@ -512,7 +505,7 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
         x, y, nx, ny = chunk.ends[end, 0], chunk.ends[end, 1], chunk.ends[end, 2], chunk.ends[end, 3]
         b0, b1 = chunk.ends[end, 4] * profile.left, chunk.ends[end, 4] * profile.right
         walls = keep_wall(
-            strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, chunk.half, bx, by, bc, rect,
+            strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, chunk.half, bx, by, bc, domain,
             x + b0 * nx, y + b0 * ny, x + b1 * nx, y + b1 * ny, near, found, END, chunk.part,
         )  # fmt: skip
     symmetric = True
@@ -528,7 +521,7 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, rect: Floats, s
                 dx, dy = -dx, -dy
             reach = f * profile.right / (dx * bx + dy * by) if dx * bx + dy * by > 0.0 else 0.0
             walls = keep_wall(
-                strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, 0, bx, by, bc, rect,
+                strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, 0, bx, by, bc, domain,
                 chunk.x, chunk.y, chunk.x + reach * dx, chunk.y + reach * dy, near, found, END, chunk.part,
             )  # fmt: skip
     strips.made[2] = walls
