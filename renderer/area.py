@@ -24,250 +24,47 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.domain import AXES, Domain, aim, domain_of, holds, settle, spread
-from renderer.geometry.faces import FACES, Faces, envelope, faces_of
+from renderer.geometry.faces import Faces
+from renderer.geometry.local import FULL, HELD, local_of, surround
 from renderer.geometry.polygon import CORNERS, Counts, area, subtract
-from renderer.geometry.query import Nearby, find, nearby
-from renderer.geometry.solid import Meeting, normal_of
-from renderer.geometry.strips import Strips, divide, lay, strips_of
-from renderer.geometry.view import View, on_plane, view_of
-from renderer.kernel import borrow, fixed, keep, kernel, leaf
-from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
-from renderer.tables import AREA, DIRECTIONAL, SCALE_CONSTANT, Camera, Floats, Lighting, Pattern
+from renderer.geometry.sight import Seen, colour_at, halves_of, is_bent, look, may_hide, seen_of
+from renderer.geometry.view import on_plane, view_of
+from renderer.kernel import borrow, keep, kernel, leaf
+from renderer.tables import AREA, DIRECTIONAL, Camera, Floats, Lighting, Pattern
 
 NOT_MINE = 255  # in `method`: left to another method
-CAPACITY = fixed(512)  # pieces near a rectangle
 PARTS = 512  # polygons that are left of one face
-HALVES = 65536  # half-planes of what hides or shades
-CHORD = 0.008  # how far chords leave arcs, in widths of the footprint
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 1e-6  # the shares of a footprint sum to one within this, or it is left to another method
 CHORDED = 4e-3  # ... where chords stand for arcs and steps for scales: the shares are then divided by their sum
-AROUND = (7.0, 2.0, 0.0)  # how much more than a footprint needs the faces are made for, in its sizes
-BEYOND = (0.5, 0.1, 0.0)  # ... or in the sizes of what it needs
-FEW = (12, 32, 512)  # while no more pieces than this are near
 BLOCK = 8  # footprints are taken in squares of so many pixels
 
 
-class Seen(NamedTuple):
-    """The faces as one eye and the lights see them; memory of one thread.
+class Parts(NamedTuple):
+    """Polygons of the footprint's square, 0 to 1; memory of one thread."""
 
-    Sources of light and sight are counted: the lights, then the eye. Linear functions of the screen's point (x, y),
-    pixels, are triples (a, b, c).
-    """
-
-    made: Counts  # (2,) half-planes so far; footprints so far
-    ray: Floats  # (3, 3) the ray's direction through (x, y): ray (x, y, 1)
-    back: Floats  # (3, 3) its inverse
-    source: Floats  # (sources, 4) D_p, D_q, D_w, h
-    corner: Floats  # (FACES, CORNERS, 3) on the screen, homogeneous
-    box: Floats  # (FACES, 4) on the screen: x0, y0, x1, y1
-    near: Floats  # (FACES, 3) one over the distance of a face's plane along the ray
-    facing: Floats  # (sources, FACES) positive where a face is turned towards the source
-    away: Counts  # (sources, FACES) the faces turned away from a source
-    aways: Counts  # (sources,) how many
-    half: Counts  # (sources, FACES, 2) the first of a face's half-planes and how many; -1: not made yet
-    halves: Floats  # (HALVES, 4) g and a: g . (x, y, 1) + a near(x, y) >= 0
-    tint: Floats  # (FACES, lights + 1, 3) colours of a face that has the same everywhere
-    tinted: Counts  # (FACES,)
-    parts: Floats  # (2, PARTS, CORNERS, 2) what is seen of a face, and what of that is lit
-    counts: Counts  # (2, PARTS)
+    polygon: Floats  # (2, PARTS, CORNERS, 2) what is seen of a face, and what of that is lit
+    corners: Counts  # (2, PARTS)
     planes: Floats  # (CORNERS, 3)
     one: Floats  # (CORNERS, 3)
     two: Floats
 
 
 @leaf
-def seen_of(lights: int) -> Seen:
-    n = lights + 1
-    return Seen(
-        np.zeros(2, np.int64), np.empty((3, 3)), np.empty((3, 3)), np.empty((n, 4)), np.empty((FACES, CORNERS, 3)),
-        np.empty((FACES, 4)), np.empty((FACES, 3)), np.empty((n, FACES)), np.empty((n, FACES), np.int64),
-        np.zeros(n, np.int64), np.full((n, FACES, 2), -1, np.int64), np.empty((HALVES, 4)),
-        np.empty((FACES, n, 3)), np.full(FACES, -1, np.int64), np.empty((2, PARTS, CORNERS, 2)),
-        np.empty((2, PARTS), np.int64), np.empty((CORNERS, 3)), np.empty((CORNERS, 3)), np.empty((CORNERS, 3)),
+def parts_of() -> Parts:
+    return Parts(
+        np.empty((2, PARTS, CORNERS, 2)), np.empty((2, PARTS), np.int64), np.empty((CORNERS, 3)),
+        np.empty((CORNERS, 3)), np.empty((CORNERS, 3)),
     )  # fmt: skip
 
 
 @leaf
-def make(
-    pattern: Pattern, domain: Domain, size: float, slab: Floats, found: Nearby, strips: Strips, faces: Faces
-) -> bool:  # fmt: skip
-    """Make the faces of what a footprint needs, `slab`, and of somewhat more where little is near: `domain`.
-
-    size: of the footprint, pattern units. False where there is too much.
-    """
-    m = pattern.reach
-    stepped = pattern.height > 0.0
-    for groove in pattern.grooves:
-        stepped = stepped or groove.priority > 0
-    for k in range(len(AROUND)):
-        more = max(AROUND[k] * size, BEYOND[k] * max(slab[0, 1] - slab[0, 0], slab[1, 1] - slab[1, 0]))
-        settle(domain, slab, more)
-        rim = domain.slab
-        count = find(pattern, found, rim[0, 0] - m, rim[1, 0] - m, rim[0, 1] + m, rim[1, 1] + m, FEW[k])
-        room = count >= 0
-        for i in range(max(count, 0)):  # what overhangs is no height field
-            profile = pattern.grooves[pattern.pieces[found.piece[i]].groove].profile
-            room = room and (
-                len(pattern.part_first) == 0 or pattern.part_first[profile] == pattern.part_first[profile + 1]
-            )
-        strips.made[0] = strips.made[1] = strips.made[2] = 0
-        for i in range(max(count, 0)):
-            if not room:
-                break
-            chunks = divide(
-                pattern, found.piece[i], found.shift[i, 0], found.shift[i, 1], rim, CHORD * size, strips.chunks
-            )
-            room = room and chunks >= 0
-            for j in range(chunks):
-                room = room and lay(pattern, found.piece[i], i, strips.chunks[j], domain, stepped, strips)
-        if room and envelope(strips, domain, pattern.height + pattern.depth, faces):
-            return True
-    return False
-
-
-@leaf
-def look(frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen) -> bool:
-    """See the faces from a footprint's eye: fill `seen`. False where the eye is on the plane."""
-    ray, back = seen.ray, seen.back
-    d0, d1, d2 = frame.eye[0], frame.eye[1], frame.eye[2]
-    # towards the point (P / W, Q / W, 0) of the plane, W < 0 (view), from the footprint's square to pixels
-    for k in range(3):
-        if k == 0:
-            m0, m1, m2, e = view.pu, view.pv, view.p1, d0
-        elif k == 1:
-            m0, m1, m2, e = view.qu, view.qv, view.q1, d1
-        else:
-            m0, m1, m2, e = 0.0, 0.0, 0.0, d2
-        m0, m1, m2 = e * view.wu - m0, e * view.wv - m1, e * view.w1 - m2
-        m0, m1 = m0 / footprint.size, m1 / footprint.size
-        ray[k, 0], ray[k, 1], ray[k, 2] = m0, m1, m2 - m0 * footprint.x - m1 * footprint.y
-    c00 = ray[1, 1] * ray[2, 2] - ray[1, 2] * ray[2, 1]
-    c01 = ray[1, 2] * ray[2, 0] - ray[1, 0] * ray[2, 2]
-    c02 = ray[1, 0] * ray[2, 1] - ray[1, 1] * ray[2, 0]
-    det = ray[0, 0] * c00 + ray[0, 1] * c01 + ray[0, 2] * c02
-    if not abs(det) > 0.0:
-        return False
-    back[0, 0], back[1, 0], back[2, 0] = c00 / det, c01 / det, c02 / det
-    back[0, 1] = (ray[0, 2] * ray[2, 1] - ray[0, 1] * ray[2, 2]) / det
-    back[1, 1] = (ray[0, 0] * ray[2, 2] - ray[0, 2] * ray[2, 0]) / det
-    back[2, 1] = (ray[0, 1] * ray[2, 0] - ray[0, 0] * ray[2, 1]) / det
-    back[0, 2] = (ray[0, 1] * ray[1, 2] - ray[0, 2] * ray[1, 1]) / det
-    back[1, 2] = (ray[0, 2] * ray[1, 0] - ray[0, 0] * ray[1, 2]) / det
-    back[2, 2] = (ray[0, 0] * ray[1, 1] - ray[0, 1] * ray[1, 0]) / det
-    n, eye = faces.made[0], len(lights)
-    for l in range(eye):
-        d = light_to_pattern(frame, lights[l])
-        for k in range(4):
-            seen.source[l, k] = d[k]
-    seen.source[eye, 0], seen.source[eye, 1], seen.source[eye, 2], seen.source[eye, 3] = d0, d1, d2, 1.0
-    seen.made[0] = 0
-    for s in range(eye + 1):
-        count = 0
-        source = seen.source[s]
-        for j in range(n):
-            plane = faces.plane[j]
-            facing = plane[0] * source[0] + plane[1] * source[1] + plane[2] * source[2] + plane[3] * source[3]
-            size = abs(plane[0] * source[0]) + abs(plane[1] * source[1]) + abs(plane[2] * source[2])
-            if abs(facing) <= 1e-13 * (size + abs(plane[3]) * source[3]):
-                facing = 0.0  # edge on
-            seen.facing[s, j] = facing
-            seen.half[s, j, 0] = -1
-            if facing < 0.0:
-                seen.away[s, count] = j
-                count += 1
-        seen.aways[s] = count
-    for j in range(n):
-        plane, facing = faces.plane[j], seen.facing[eye, j]
-        if facing == 0.0:
-            continue
-        for k in range(3):
-            seen.near[j, k] = -(plane[0] * ray[0, k] + plane[1] * ray[1, k] + plane[2] * ray[2, k]) / facing
-        if facing < 0.0:
-            continue
-        seen.tinted[j] = -1
-        box = seen.box[j]
-        box[0] = box[1] = math.inf
-        box[2] = box[3] = -math.inf
-        for i in range(faces.corners[j]):
-            x0, x1, x2 = faces.corner[j, i, 0] - d0, faces.corner[j, i, 1] - d1, faces.corner[j, i, 2] - d2
-            corner = seen.corner[j, i]
-            for k in range(3):
-                corner[k] = back[k, 0] * x0 + back[k, 1] * x1 + back[k, 2] * x2
-            if corner[2] > 0.0:
-                x, y = corner[0] / corner[2], corner[1] / corner[2]
-                box[0], box[1], box[2], box[3] = min(box[0], x), min(box[1], y), max(box[2], x), max(box[3], y)
-            else:
-                box[0] = box[1] = -math.inf
-                box[2] = box[3] = math.inf
-    return True
-
-
-@leaf
-def halves_of(s: int, j: int, faces: Faces, seen: Seen) -> bool:
-    """Make the half-planes of what face j keeps from source s: in front of it, within its edges seen from there."""
-    count, source, ray = faces.corners[j], seen.source[s], seen.ray
-    eye = seen.source[len(seen.source) - 1]
-    first = seen.made[0]
-    if first + count + 1 > HALVES:
-        return False
-    n = first
-    plane = faces.plane[j]
-    for k in range(3):
-        seen.halves[n, k] = plane[0] * ray[0, k] + plane[1] * ray[1, k] + plane[2] * ray[2, k]
-    seen.halves[n, 3] = plane[0] * eye[0] + plane[1] * eye[1] + plane[2] * eye[2] + plane[3]
-    n += 1
-    box = faces.box[j]
-    short = 1e-12 * max(box[3] - box[0], box[4] - box[1], box[5] - box[2])
-    for i in range(count):
-        a, b = faces.corner[j, i], faces.corner[j, i + 1 if i + 1 < count else 0]
-        e0, e1, e2 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-        if max(abs(e0), abs(e1), abs(e2)) <= short:
-            continue
-        r0, r1, r2 = source[0] - source[3] * a[0], source[1] - source[3] * a[1], source[2] - source[3] * a[2]
-        a0, a1, a2 = e1 * r2 - e2 * r1, e2 * r0 - e0 * r2, e0 * r1 - e1 * r0
-        for k in range(3):
-            seen.halves[n, k] = a0 * ray[0, k] + a1 * ray[1, k] + a2 * ray[2, k]
-        seen.halves[n, 3] = a0 * (eye[0] - a[0]) + a1 * (eye[1] - a[1]) + a2 * (eye[2] - a[2])
-        n += 1
-    seen.half[s, j, 0], seen.half[s, j, 1] = first, n - first
-    seen.made[0] = n
-    return True
-
-
-@leaf
-def may_hide(s: int, f: int, b: int, faces: Faces, seen: Seen) -> bool:
-    """Whether face b may stand between face f and source s, by their boxes."""
-    one, two, source = faces.box[f], faces.box[b], seen.source[s]
-    if two[5] <= one[2]:
-        return False
-    if source[3] == 0.0:
-        rise = (two[5] - one[2]) / source[2]
-        for k in range(2):
-            move = rise * source[k]
-            if two[3 + k] <= one[k] + min(move, 0.0) or two[k] >= one[3 + k] + max(move, 0.0):
-                return False
-        return True
-    way = 1.0
-    if source[2] > two[5]:
-        way = (two[5] - one[2]) / (source[2] - one[2])
-    for k in range(2):
-        low, high = one[k], one[3 + k]
-        if two[3 + k] <= min(low, low + way * (source[k] - low)):
-            return False
-        if two[k] >= max(high, high + way * (source[k] - high)):
-            return False
-    return True
-
-
-@leaf
-def hide(s: int, f: int, which: int, n: int, footprint: np.void, faces: Faces, seen: Seen) -> int:
-    """Take what source s does not see of face f out of the n polygons `seen.parts[which]`: how many are left.
+def hide(s: int, f: int, which: int, n: int, footprint: np.void, faces: Faces, seen: Seen, parts: Parts) -> int:
+    """Take what source s does not see of face f out of the n polygons `parts.polygon[which]`: how many are left.
 
     Polygons are in the footprint's square, 0 to 1. Negative where there is no room.
     """
-    size, near, planes = footprint.size, seen.near[f], seen.planes
+    size, near, planes = footprint.size, seen.near[f], parts.planes
     for k in range(seen.aways[s]):
         b = seen.away[s, k]
         if b == f or not may_hide(s, f, b, faces, seen):
@@ -283,22 +80,22 @@ def hide(s: int, f: int, which: int, n: int, footprint: np.void, faces: Faces, s
             long = abs(planes[i, 0]) + abs(planes[i, 1]) + abs(c)
             if long > 0.0:
                 planes[i, 0], planes[i, 1], planes[i, 2] = planes[i, 0] / long, planes[i, 1] / long, c / long
-        n = subtract(seen.parts[which], seen.counts[which], n, planes, count, LEAST, seen.one, seen.two)
+        n = subtract(parts.polygon[which], parts.corners[which], n, planes, count, LEAST, parts.one, parts.two)
         if n <= 0:
             break
     return n
 
 
 @leaf
-def show(f: int, footprint: np.void, faces: Faces, seen: Seen) -> int:
-    """Write what of face f lies within the footprint to seen.parts[0, 0]: how many corners it has."""
+def show(f: int, footprint: np.void, faces: Faces, seen: Seen, parts: Parts) -> int:
+    """Write what of face f lies within the footprint to parts.polygon[0, 0]: how many corners it has."""
     size = footprint.size
     box = seen.box[f]
     x0, y0 = footprint.x, footprint.y
     if box[0] >= x0 + size or box[2] <= x0 or box[1] >= y0 + size or box[3] <= y0:
         return 0
     # homogeneous, so that what lies behind the eye does no harm
-    one, two = seen.one, seen.two
+    one, two = parts.one, parts.two
     count = faces.corners[f]
     for i in range(count):
         c = seen.corner[f, i]
@@ -323,7 +120,7 @@ def show(f: int, footprint: np.void, faces: Faces, seen: Seen) -> int:
             return 0
         one, two = two, one
         count = made
-    part = seen.parts[0, 0]
+    part = parts.polygon[0, 0]
     for i in range(count):
         if not one[i, 2] > 0.0:
             return 0
@@ -334,43 +131,6 @@ def show(f: int, footprint: np.void, faces: Faces, seen: Seen) -> int:
             for k in range(2):
                 part[i, k], part[j, k] = part[j, k], part[i, k]
     return count
-
-
-@leaf
-def colour_at(
-    f: int, light: int, x: float, y: float, pattern: Pattern, frame: np.void, lighting: Lighting,
-    material: np.void, albedo: Floats, bent: bool, found: Nearby, faces: Faces, seen: Seen,
-) -> tuple[float, float, float]:  # fmt: skip
-    """The radiance that face f sends to the eye through the screen's point (x, y): of one light; of sky and glow."""
-    near = seen.near[f, 0] * x + seen.near[f, 1] * y + seen.near[f, 2]
-    t = 1.0 / near
-    ray = seen.ray
-    p = frame.eye[0] + t * (ray[0, 0] * x + ray[0, 1] * y + ray[0, 2])
-    q = frame.eye[1] + t * (ray[1, 0] * x + ray[1, 1] * y + ray[1, 2])
-    w = frame.eye[2] + t * (ray[2, 0] * x + ray[2, 1] * y + ray[2, 2])
-    plane = faces.plane[f]
-    n0, n1, n2 = plane[0], plane[1], plane[2]
-    if bent:
-        m = Meeting(w, faces.tag[f, 1], faces.tag[f, 0], faces.tag[f, 2])
-        n0, n1, n2 = normal_of(pattern, found, m, p, q, 0.0, 0.0)
-        if n0 * plane[0] + n1 * plane[1] + n2 * plane[2] < 0.0:
-            n0, n1, n2 = -n0, -n1, -n2
-    n = normal_to_world(frame, (n0, n1, n2))
-    at = to_world(frame, p, q, w)
-    eye = to_world(frame, frame.eye[0], frame.eye[1], frame.eye[2])
-    e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
-    if light < 0:
-        return ambient(material, lighting.sky, albedo, n, e)
-    return lit_by(lighting.lights[light], material, n, e, at)
-
-
-@leaf
-def is_bent(pattern: Pattern, f: int, found: Nearby, faces: Faces) -> bool:
-    """Whether the normal of a face is not the same all over."""
-    if faces.tag[f, 0] < 0 or faces.tag[f, 2] != 0:
-        return False
-    piece = pattern.pieces[found.piece[faces.tag[f, 0]]]
-    return piece.curvature != 0.0 or pattern.grooves[piece.groove].scale_kind != SCALE_CONSTANT
 
 
 def in_blocks(footprints: NDArray[np.void], chosen: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -390,15 +150,14 @@ def area_sampling(
     NOT_MINE where too much is near, or where the shares do not sum to one. slots: rows of `materials` for the
     pattern's facets, the object's own first.
     """
-    owned = nearby(pattern, CAPACITY), strips_of(), faces_of(), seen_of(len(lighting.lights)), domain_of()
-    found, strips, faces, seen = borrow(owned[0]), borrow(owned[1]), borrow(owned[2]), borrow(owned[3])
-    domain = borrow(owned[4])
+    owned = local_of(pattern), seen_of(len(lighting.lights)), parts_of()
+    local, seen, parts = borrow(owned[0]), borrow(owned[1]), borrow(owned[2])
+    found, faces = local.found, local.faces
     pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
     lights = lighting.lights
     eye = len(lights)
-    slab = np.empty((AXES, 2))
-    made_size, looked, usable = 0.0, -1, False
+    looked = -1
     distant = True
     for l in range(len(lights)):
         distant = distant and lights[l].kind == DIRECTIONAL
@@ -414,16 +173,11 @@ def area_sampling(
         p2, q2 = on_plane(view, 0.0, 1.0)
         size = max(math.hypot(p1 - p0, q1 - q0), math.hypot(p2 - p0, q2 - q0))
         thin = abs((p1 - p0) * (q2 - q0) - (p2 - p0) * (q1 - q0)) / size
-        fits = usable and 0.5 * made_size <= thin <= 2.0 * made_size and domain.made[0] > 0
-        fits = fits and spread(pattern, frame, view, lights, domain, slab) and holds(domain, slab)
-        if not fits:
-            aim(frame, view, lights, domain)
-            usable = spread(pattern, frame, view, lights, domain, slab)
-            usable = usable and make(pattern, domain, thin, slab, found, strips, faces)
-            made_size, looked = thin, -1
-            if not usable:
-                continue
-        if looked != footprint.frame:
+        held = surround(pattern, frame, view, lights, thin, local)
+        if held == FULL:
+            continue
+        if held != HELD or looked != footprint.frame:
+            looked = -1
             if not look(frame, view, footprint, lights, faces, seen):
                 continue
             looked = footprint.frame
@@ -432,11 +186,11 @@ def area_sampling(
         for f in range(faces.made[0]):
             if seen.facing[eye, f] <= 0.0:
                 continue
-            count = show(f, footprint, faces, seen)
+            count = show(f, footprint, faces, seen, parts)
             if count == 0:
                 continue
-            seen.counts[0, 0] = count
-            n = hide(eye, f, 0, 1, footprint, faces, seen)
+            parts.corners[0, 0] = count
+            n = hide(eye, f, 0, 1, footprint, faces, seen, parts)
             if n < 0:
                 room = False
                 break
@@ -470,16 +224,16 @@ def area_sampling(
                     if seen.aways[light] > 0:
                         which = 1
                         for i in range(n):
-                            for j in range(seen.counts[0, i]):
-                                seen.parts[1, i, j, 0] = seen.parts[0, i, j, 0]
-                                seen.parts[1, i, j, 1] = seen.parts[0, i, j, 1]
-                            seen.counts[1, i] = seen.counts[0, i]
-                        m = hide(light, f, 1, n, footprint, faces, seen)
+                            for j in range(parts.corners[0, i]):
+                                parts.polygon[1, i, j, 0] = parts.polygon[0, i, j, 0]
+                                parts.polygon[1, i, j, 1] = parts.polygon[0, i, j, 1]
+                            parts.corners[1, i] = parts.corners[0, i]
+                        m = hide(light, f, 1, n, footprint, faces, seen, parts)
                         if m < 0:
                             room = False
                             break
                 for i in range(m):
-                    part, corners = seen.parts[which, i], seen.counts[which, i]
+                    part, corners = parts.polygon[which, i], parts.corners[which, i]
                     total = area(part, corners)
                     if light < 0:
                         whole += total

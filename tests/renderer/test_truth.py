@@ -7,8 +7,8 @@ M / n * sqrt(k / P). All of the 100,000 samples but FLIPS have to agree. Where t
 normals are those of its chords: wrong by up to half the angle a between two rings, where a chord leaves its arc by
 a R (a / 8) = ARC, and so is the light that they reflect by as large a part.
 
-*line*, *area* and *auto* are held against samples drawn from another seed. The samples' noise s is measured, from two seeds;
-the RMSE of a faultless picture is s, that of its mean over P pixels s / sqrt(P). What they approximate (one
+*line*, *area* and *auto* are held against samples drawn from another seed. The samples' noise s is measured, from two
+seeds; the RMSE of a faultless picture is s, that of its mean over P pixels s / sqrt(P). What they approximate (one
 colour a facet and footprint) adds to that, by half of auto's tolerance at the most, and leaves the mean alone.
 """
 

@@ -1,0 +1,229 @@
+"""The faces of the local solid as the eye and the lights see them (DESIGN 2.1).
+
+On the screen, pixels (x, y), all is linear: one over the distance of a face's plane along the ray, and the half-planes
+of what hides or shades a face.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from renderer.geometry.faces import FACES, Faces
+from renderer.geometry.polygon import CORNERS, Counts
+from renderer.geometry.query import Nearby
+from renderer.geometry.solid import Meeting, normal_of
+from renderer.geometry.view import View
+from renderer.kernel import leaf
+from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
+from renderer.tables import SCALE_CONSTANT, Floats, Lighting, Pattern
+
+HALVES = 65536  # half-planes of what hides or shades
+
+
+class Seen(NamedTuple):
+    """The faces as one eye and the lights see them; memory of one thread.
+
+    Sources of light and sight are counted: the lights, then the eye. Linear functions of the screen's point (x, y),
+    pixels, are triples (a, b, c).
+    """
+
+    made: Counts  # (2,) half-planes so far; footprints so far
+    ray: Floats  # (3, 3) the ray's direction through (x, y): ray (x, y, 1)
+    back: Floats  # (3, 3) its inverse
+    source: Floats  # (sources, 4) D_p, D_q, D_w, h
+    corner: Floats  # (FACES, CORNERS, 3) on the screen, homogeneous
+    box: Floats  # (FACES, 4) on the screen: x0, y0, x1, y1
+    near: Floats  # (FACES, 3) one over the distance of a face's plane along the ray
+    facing: Floats  # (sources, FACES) positive where a face is turned towards the source
+    away: Counts  # (sources, FACES) the faces turned away from a source
+    aways: Counts  # (sources,) how many
+    half: Counts  # (sources, FACES, 2) the first of a face's half-planes and how many; -1: not made yet
+    halves: Floats  # (HALVES, 4) g and a: g . (x, y, 1) + a near(x, y) >= 0
+    tint: Floats  # (FACES, lights + 1, 3) colours of a face that has the same everywhere
+    tinted: Counts  # (FACES,)
+
+
+@leaf
+def seen_of(lights: int) -> Seen:
+    n = lights + 1
+    return Seen(
+        np.zeros(2, np.int64), np.empty((3, 3)), np.empty((3, 3)), np.empty((n, 4)), np.empty((FACES, CORNERS, 3)),
+        np.empty((FACES, 4)), np.empty((FACES, 3)), np.empty((n, FACES)), np.empty((n, FACES), np.int64),
+        np.zeros(n, np.int64), np.full((n, FACES, 2), -1, np.int64), np.empty((HALVES, 4)),
+        np.empty((FACES, n, 3)), np.full(FACES, -1, np.int64),
+    )  # fmt: skip
+
+
+@leaf
+def look(frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen) -> bool:
+    """See the faces from a footprint's eye: fill `seen`. False where the eye is on the plane."""
+    ray, back = seen.ray, seen.back
+    d0, d1, d2 = frame.eye[0], frame.eye[1], frame.eye[2]
+    # towards the point (P / W, Q / W, 0) of the plane, W < 0 (view), from the footprint's square to pixels
+    for k in range(3):
+        if k == 0:
+            m0, m1, m2, e = view.pu, view.pv, view.p1, d0
+        elif k == 1:
+            m0, m1, m2, e = view.qu, view.qv, view.q1, d1
+        else:
+            m0, m1, m2, e = 0.0, 0.0, 0.0, d2
+        m0, m1, m2 = e * view.wu - m0, e * view.wv - m1, e * view.w1 - m2
+        m0, m1 = m0 / footprint.size, m1 / footprint.size
+        ray[k, 0], ray[k, 1], ray[k, 2] = m0, m1, m2 - m0 * footprint.x - m1 * footprint.y
+    c00 = ray[1, 1] * ray[2, 2] - ray[1, 2] * ray[2, 1]
+    c01 = ray[1, 2] * ray[2, 0] - ray[1, 0] * ray[2, 2]
+    c02 = ray[1, 0] * ray[2, 1] - ray[1, 1] * ray[2, 0]
+    det = ray[0, 0] * c00 + ray[0, 1] * c01 + ray[0, 2] * c02
+    if not abs(det) > 0.0:
+        return False
+    back[0, 0], back[1, 0], back[2, 0] = c00 / det, c01 / det, c02 / det
+    back[0, 1] = (ray[0, 2] * ray[2, 1] - ray[0, 1] * ray[2, 2]) / det
+    back[1, 1] = (ray[0, 0] * ray[2, 2] - ray[0, 2] * ray[2, 0]) / det
+    back[2, 1] = (ray[0, 1] * ray[2, 0] - ray[0, 0] * ray[2, 1]) / det
+    back[0, 2] = (ray[0, 1] * ray[1, 2] - ray[0, 2] * ray[1, 1]) / det
+    back[1, 2] = (ray[0, 2] * ray[1, 0] - ray[0, 0] * ray[1, 2]) / det
+    back[2, 2] = (ray[0, 0] * ray[1, 1] - ray[0, 1] * ray[1, 0]) / det
+    n, eye = faces.made[0], len(lights)
+    for l in range(eye):
+        d = light_to_pattern(frame, lights[l])
+        for k in range(4):
+            seen.source[l, k] = d[k]
+    seen.source[eye, 0], seen.source[eye, 1], seen.source[eye, 2], seen.source[eye, 3] = d0, d1, d2, 1.0
+    seen.made[0] = 0
+    for s in range(eye + 1):
+        count = 0
+        source = seen.source[s]
+        for j in range(n):
+            plane = faces.plane[j]
+            facing = plane[0] * source[0] + plane[1] * source[1] + plane[2] * source[2] + plane[3] * source[3]
+            size = abs(plane[0] * source[0]) + abs(plane[1] * source[1]) + abs(plane[2] * source[2])
+            if abs(facing) <= 1e-13 * (size + abs(plane[3]) * source[3]):
+                facing = 0.0  # edge on
+            seen.facing[s, j] = facing
+            seen.half[s, j, 0] = -1
+            if facing < 0.0:
+                seen.away[s, count] = j
+                count += 1
+        seen.aways[s] = count
+    for j in range(n):
+        plane, facing = faces.plane[j], seen.facing[eye, j]
+        if facing == 0.0:
+            continue
+        for k in range(3):
+            seen.near[j, k] = -(plane[0] * ray[0, k] + plane[1] * ray[1, k] + plane[2] * ray[2, k]) / facing
+        if facing < 0.0:
+            continue
+        seen.tinted[j] = -1
+        box = seen.box[j]
+        box[0] = box[1] = math.inf
+        box[2] = box[3] = -math.inf
+        for i in range(faces.corners[j]):
+            x0, x1, x2 = faces.corner[j, i, 0] - d0, faces.corner[j, i, 1] - d1, faces.corner[j, i, 2] - d2
+            corner = seen.corner[j, i]
+            for k in range(3):
+                corner[k] = back[k, 0] * x0 + back[k, 1] * x1 + back[k, 2] * x2
+            if corner[2] > 0.0:
+                x, y = corner[0] / corner[2], corner[1] / corner[2]
+                box[0], box[1], box[2], box[3] = min(box[0], x), min(box[1], y), max(box[2], x), max(box[3], y)
+            else:
+                box[0] = box[1] = -math.inf
+                box[2] = box[3] = math.inf
+    return True
+
+
+@leaf
+def halves_of(s: int, j: int, faces: Faces, seen: Seen) -> bool:
+    """Make the half-planes of what face j keeps from source s: in front of it, within its edges seen from there."""
+    count, source, ray = faces.corners[j], seen.source[s], seen.ray
+    eye = seen.source[len(seen.source) - 1]
+    first = seen.made[0]
+    if first + count + 1 > HALVES:
+        return False
+    n = first
+    plane = faces.plane[j]
+    for k in range(3):
+        seen.halves[n, k] = plane[0] * ray[0, k] + plane[1] * ray[1, k] + plane[2] * ray[2, k]
+    seen.halves[n, 3] = plane[0] * eye[0] + plane[1] * eye[1] + plane[2] * eye[2] + plane[3]
+    n += 1
+    box = faces.box[j]
+    short = 1e-12 * max(box[3] - box[0], box[4] - box[1], box[5] - box[2])
+    for i in range(count):
+        a, b = faces.corner[j, i], faces.corner[j, i + 1 if i + 1 < count else 0]
+        e0, e1, e2 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+        if max(abs(e0), abs(e1), abs(e2)) <= short:
+            continue
+        r0, r1, r2 = source[0] - source[3] * a[0], source[1] - source[3] * a[1], source[2] - source[3] * a[2]
+        a0, a1, a2 = e1 * r2 - e2 * r1, e2 * r0 - e0 * r2, e0 * r1 - e1 * r0
+        for k in range(3):
+            seen.halves[n, k] = a0 * ray[0, k] + a1 * ray[1, k] + a2 * ray[2, k]
+        seen.halves[n, 3] = a0 * (eye[0] - a[0]) + a1 * (eye[1] - a[1]) + a2 * (eye[2] - a[2])
+        n += 1
+    seen.half[s, j, 0], seen.half[s, j, 1] = first, n - first
+    seen.made[0] = n
+    return True
+
+
+@leaf
+def may_hide(s: int, f: int, b: int, faces: Faces, seen: Seen) -> bool:
+    """Whether face b may stand between face f and source s, by their boxes."""
+    one, two, source = faces.box[f], faces.box[b], seen.source[s]
+    if two[5] <= one[2]:
+        return False
+    if source[3] == 0.0:
+        rise = (two[5] - one[2]) / source[2]
+        for k in range(2):
+            move = rise * source[k]
+            if two[3 + k] <= one[k] + min(move, 0.0) or two[k] >= one[3 + k] + max(move, 0.0):
+                return False
+        return True
+    way = 1.0
+    if source[2] > two[5]:
+        way = (two[5] - one[2]) / (source[2] - one[2])
+    for k in range(2):
+        low, high = one[k], one[3 + k]
+        if two[3 + k] <= min(low, low + way * (source[k] - low)):
+            return False
+        if two[k] >= max(high, high + way * (source[k] - high)):
+            return False
+    return True
+
+
+@leaf
+def colour_at(
+    f: int, light: int, x: float, y: float, pattern: Pattern, frame: np.void, lighting: Lighting,
+    material: np.void, albedo: Floats, bent: bool, found: Nearby, faces: Faces, seen: Seen,
+) -> tuple[float, float, float]:  # fmt: skip
+    """The radiance that face f sends to the eye through the screen's point (x, y): of one light; of sky and glow."""
+    near = seen.near[f, 0] * x + seen.near[f, 1] * y + seen.near[f, 2]
+    t = 1.0 / near
+    ray = seen.ray
+    p = frame.eye[0] + t * (ray[0, 0] * x + ray[0, 1] * y + ray[0, 2])
+    q = frame.eye[1] + t * (ray[1, 0] * x + ray[1, 1] * y + ray[1, 2])
+    w = frame.eye[2] + t * (ray[2, 0] * x + ray[2, 1] * y + ray[2, 2])
+    plane = faces.plane[f]
+    n0, n1, n2 = plane[0], plane[1], plane[2]
+    if bent:
+        m = Meeting(w, faces.tag[f, 1], faces.tag[f, 0], faces.tag[f, 2])
+        n0, n1, n2 = normal_of(pattern, found, m, p, q, 0.0, 0.0)
+        if n0 * plane[0] + n1 * plane[1] + n2 * plane[2] < 0.0:
+            n0, n1, n2 = -n0, -n1, -n2
+    n = normal_to_world(frame, (n0, n1, n2))
+    at = to_world(frame, p, q, w)
+    eye = to_world(frame, frame.eye[0], frame.eye[1], frame.eye[2])
+    e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
+    if light < 0:
+        return ambient(material, lighting.sky, albedo, n, e)
+    return lit_by(lighting.lights[light], material, n, e, at)
+
+
+@leaf
+def is_bent(pattern: Pattern, f: int, found: Nearby, faces: Faces) -> bool:
+    """Whether the normal of a face is not the same all over."""
+    if faces.tag[f, 0] < 0 or faces.tag[f, 2] != 0:
+        return False
+    piece = pattern.pieces[found.piece[faces.tag[f, 0]]]
+    return piece.curvature != 0.0 or pattern.grooves[piece.groove].scale_kind != SCALE_CONSTANT
