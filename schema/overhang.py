@@ -54,6 +54,15 @@ def faults(points: Points) -> Iterator[Fault]:
         i, j, found = meeting
         yield Fault(("points", j + 1), "a polyline that does not meet itself", f"facet {j} {found} facet {i}")
         return
+    for i, (a, b) in enumerate(pairwise(points)):
+        if a[1] * b[1] < 0:
+            at = a[0] + a[1] / (a[1] - b[1]) * (b[0] - a[0])
+            if not points[0][0] < at < points[last][0]:
+                expected = (
+                    f"no facet that crosses w = 0 beyond the profile's ends, {points[0][0]:g} and {points[last][0]:g}"
+                )
+                yield Fault(("points", i + 1), expected, f"facet {i} at b = {at:g}")
+                return
     first, end = internal(points)
     if first == end:
         return

@@ -81,13 +81,14 @@ def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[floa
             at = 0.0
         if at <= low + thin:
             break  # here spans end because the ray does
-        if not below and at <= thin:
-            below = True
+        on_plane = not below and at <= thin
+        below = below or on_plane
         until = at - thin
         while k < n and e.w[e.order[k]] >= until:
             sign, kind, rank = e.change[e.order[k], 0], e.change[e.order[k], 1], e.change[e.order[k], 2]
             e.open[rank, kind] += sign
-            if not (kind == REMOVE and sign > 0) and (facet < 0 or e.change[e.order[k], 3] >= 0):
+            # What is no facet does not take the plane's place: chords may end there.
+            if not (kind == REMOVE and sign > 0) and (e.change[e.order[k], 3] >= 0 or (facet < 0 and not on_plane)):
                 facet, owner = e.change[e.order[k], 3], e.change[e.order[k], 4]
             k += 1
         if is_solid(e, below) and (k >= n or e.w[e.order[k]] < until):

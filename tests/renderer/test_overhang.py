@@ -280,6 +280,15 @@ def test_against_the_solid(
     assert np.sqrt(np.mean(error**2)) < truth.max() / SAMPLES * (FLIPS / (rows * columns)) ** 0.5
 
 
+def test_the_plane_over_an_undercut_is_the_plane(plate: Plate, radiance: Radiance) -> None:
+    """As high as deep, a ray's chords on an arc end on the plane: no wall is seen there, nor another normal."""
+    even: Points = [[-0.1, 0], [-0.14, -0.02], [0.08, 0.04], [-0.04, -0.04], [0.1, 0]]
+    csg, truth = (
+        radiance(plate([cut(RING, even)]), method=method, samples=SAMPLES)[6:] for method in ("csg", "geometry")
+    )
+    assert (np.abs(csg - truth).max(axis=2) > 0.02).sum() <= FLIPS
+
+
 def test_on_curved_shapes(plate: Plate, radiance: Radiance) -> None:
     """csg renders in the tangent plane; on a sphere 200 grooves' depths thick the two differ by less than seeds do."""
     shape = {"type": "sphere", "radius": 1.0}

@@ -43,8 +43,12 @@ def test_internal_facets() -> None:
         ([(0, 0), (2, -2), (0, -2), (1, -1), (3, 0)], 3, "does not meet itself", "facet 2 meets facet 0"),
         # the cap's rim hangs down: it would be below internal facets, and nothing would be left of it
         ([(-1, 0), (-1, 2), (-2, 1), (-2, 3), (2, 3), (2, 1), (1, 2), (1, 0)], 4, "no facet above point 1", "facet 3"),
-        # a lip that leans over the groove, from whose tip all is open
-        ([(0, 0), (2, 2), (-2, 4), (-3, -4), (8, -4), (8, 0)], 1, "external facets outside", "facet 0"),
+        # it begins with a level run to the left, from whose end on all is open
+        ([(-1, 0), (-1.7, 0), (-0.3, -0.2), (-1.8, -1.9), (1, 0)], 1, "external facets outside", "facet 0"),
+        # a lip that leans over from outside of the groove's foot
+        ([(0, 0), (2, 2), (-2, 4), (-3, -4), (8, -4), (8, 0)], 3, "no facet that crosses w = 0", "facet 2"),
+        # an undercut that comes up through the plane
+        ([(0, 0), (0, -2), (3, -2), (5, 2), (2, -1), (1, 0)], 3, "no facet that crosses w = 0", "facet 2 at b = 4"),
         ([(0, 0), (1, -1), (-3, -2), (-1, 0)], 3, "to the right", "-1"),
     ],
 )  # fmt: skip
