@@ -13,22 +13,20 @@ Everything is computed in the screen's pixels, relative to the footprint: areas 
 colour within a part, taken at its middle, or at several places where it changes; chords for arcs; and the tangent
 plane of a curved object.
 
-The faces over a rectangle of the plane are made once for all the footprints that need no more than that.
+On flat objects the faces are made once for a block of pixels.
 """
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.faces import Faces
-from renderer.geometry.local import FULL, HELD, local_of, surround
+from renderer.geometry.local import BLOCKS, local_of
 from renderer.geometry.polygon import CORNERS, Counts, area, subtract
-from renderer.geometry.sight import Seen, colour_at, halves_of, is_bent, look, may_hide, seen_of
-from renderer.geometry.view import on_plane, view_of
+from renderer.geometry.sight import Seen, colour_at, halves_of, is_bent, may_hide, see, seen_of
 from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.tables import AREA, DIRECTIONAL, Camera, Floats, Lighting, Pattern
 
@@ -37,7 +35,6 @@ PARTS = 512  # polygons that are left of one face
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 1e-6  # the shares of a footprint sum to one within this, or it is left to another method
 CHORDED = 4e-3  # ... where chords stand for arcs and steps for scales: the shares are then divided by their sum
-BLOCK = 8  # footprints are taken in squares of so many pixels
 
 
 class Parts(NamedTuple):
@@ -136,51 +133,36 @@ def show(f: int, footprint: np.void, faces: Faces, seen: Seen, parts: Parts) -> 
 def in_blocks(footprints: NDArray[np.void], chosen: NDArray[np.int64]) -> NDArray[np.int64]:
     """The footprints `chosen` in the order in which neighbours follow one another: the same faces serve them."""
     x, y = footprints["x"][chosen], footprints["y"][chosen]
-    return chosen[np.lexsort((x, y, x // BLOCK, y // BLOCK))]
+    return chosen[np.lexsort((x, y, *(at // side for side in reversed(BLOCKS) if side for at in (x, y))))]
 
 
 @kernel
 def area_sampling(
-    pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void],
+    flat: bool, pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void],
     camera: Camera, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats,
     radiance: Floats, method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance (n, 3) and method.
 
-    NOT_MINE where too much is near, or where the shares do not sum to one. slots: rows of `materials` for the
-    pattern's facets, the object's own first.
+    flat: they share one frame. NOT_MINE where too much is near, or where the shares do not sum to one. slots: rows of
+    `materials` for the pattern's facets, the object's own first.
     """
     owned = local_of(pattern), seen_of(len(lighting.lights)), parts_of()
     local, seen, parts = borrow(owned[0]), borrow(owned[1]), borrow(owned[2])
-    found, faces = local.found, local.faces
+    found, faces, square = local.found, local.faces, local.square[0]
     pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
     lights = lighting.lights
     eye = len(lights)
-    looked = -1
     distant = True
     for l in range(len(lights)):
         distant = distant and lights[l].kind == DIRECTIONAL
     for index in chosen:
         footprint = footprints[index]
         frame = frames[footprint.frame]
-        view = view_of(footprint, frame, camera)
         method[index] = NOT_MINE
-        if frame.eye[2] <= 0.0:
+        if not see(pattern, frame, footprint, flat, camera, lights, local, seen):
             continue
-        p0, q0 = on_plane(view, 0.0, 0.0)
-        p1, q1 = on_plane(view, 1.0, 0.0)
-        p2, q2 = on_plane(view, 0.0, 1.0)
-        size = max(math.hypot(p1 - p0, q1 - q0), math.hypot(p2 - p0, q2 - q0))
-        thin = abs((p1 - p0) * (q2 - q0) - (p2 - p0) * (q1 - q0)) / size
-        held = surround(pattern, frame, view, lights, thin, local)
-        if held == FULL:
-            continue
-        if held != HELD or looked != footprint.frame:
-            looked = -1
-            if not look(frame, view, footprint, lights, faces, seen):
-                continue
-            looked = footprint.frame
         red = green = blue = whole = 0.0
         room, chorded = True, False
         for f in range(faces.made[0]):
@@ -206,7 +188,7 @@ def area_sampling(
             plain = distant and not bent and material.metallic == 0.0 and material.f90 == 0.0
             if plain and seen.tinted[f] < 0:
                 seen.tinted[f] = 0
-                x, y = footprint.x + 0.5 * footprint.size, footprint.y + 0.5 * footprint.size
+                x, y = square.x + 0.5 * square.size, square.y + 0.5 * square.size
                 for l in range(eye + 1):
                     r, g, b = colour_at(
                         f, l if l < eye else -1, x, y, pattern, frame, lighting, material, albedo, bent, found, faces,

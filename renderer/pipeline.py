@@ -136,7 +136,8 @@ class Frame:
             relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
             return timed("relief", start)
         if settings.method == "area" and pattern is not BARE:
-            area_sampling(pattern, seen.footprints, in_blocks(seen.footprints, chosen), *rest)
+            flat = int(row) in self.flat
+            area_sampling(flat, pattern, seen.footprints, in_blocks(seen.footprints, chosen), *rest)
             timed("area", start)
         else:
             line(MODES.get(settings.method, LOOSE), pattern, seen.footprints, chosen, *rest)

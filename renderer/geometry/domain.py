@@ -93,15 +93,6 @@ def spread(
 
 
 @leaf
-def holds(domain: Domain, slab: Floats) -> bool:
-    """Whether the domain holds another's slabs along its axes."""
-    inside = domain.made[1] > 0
-    for k in range(domain.made[0]):
-        inside = inside and slab[k, 0] >= domain.slab[k, 0] and slab[k, 1] <= domain.slab[k, 1]
-    return inside
-
-
-@leaf
 def settle(domain: Domain, slab: Floats, more: float) -> None:
     """Take these slabs, on each side wider by `more`, for the domain's own, and draw its outline."""
     n = domain.made[0]

@@ -1,25 +1,28 @@
-"""The surface of the local solid around footprints, made once for all that need no more of it."""
+"""The surface of the local solid around footprints, made once for all of a block of the screen where it is flat.
+
+Which faces serve a footprint depends on its place alone, so that pictures are the same for any tile.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.domain import AXES, Domain, aim, domain_of, holds, settle, spread
+from renderer.geometry.domain import AXES, Domain, aim, domain_of, settle, spread
 from renderer.geometry.faces import Faces, envelope, faces_of
 from renderer.geometry.query import Nearby, find, nearby
 from renderer.geometry.strips import Strips, divide, lay, strips_of
-from renderer.geometry.view import View
+from renderer.geometry.view import GRAZING, View, on_plane, slope_at, view_of
 from renderer.kernel import fixed, leaf
-from renderer.tables import Floats, Pattern
+from renderer.tables import FOOTPRINT, Camera, Floats, Pattern
 
 CAPACITY = fixed(512)  # pieces near a domain
 CHORD = 0.008  # how far chords leave arcs, in widths of the footprint
-AROUND = (7.0, 2.0, 0.0)  # how much more than a footprint needs the faces are made for, in its sizes
-BEYOND = (0.5, 0.1, 0.0)  # ... or in the sizes of what it needs
-FEW = (12, 32, 512)  # while no more pieces than this are near
+BLOCKS = (8, 2, 0)  # the faces are made for squares of so many pixels, aligned on the screen; 0: for the footprint
+FEW = (16, 48, 512)  # while no more pieces than this are near
 
 
 class Local(NamedTuple):
@@ -29,14 +32,16 @@ class Local(NamedTuple):
     domain: Domain
     strips: Strips
     faces: Faces
-    slab: Floats  # (AXES, 2) what a footprint needs
-    made: Floats  # (1,) the size of the footprint that the faces were made for, pattern units; 0: there are none
+    slab: Floats  # (AXES, 2) what a square needs
+    square: NDArray[np.void]  # (1,) FOOTPRINT: what the faces are made for
+    at: Floats  # (BLOCKS, 3) the block of each size last tried, in its sizes, and whether its faces are held: 1
 
 
 @leaf
 def local_of(pattern: Pattern) -> Local:
     return Local(
-        nearby(pattern, CAPACITY), domain_of(), strips_of(), faces_of(), np.empty((AXES, 2)), np.zeros(1)
+        nearby(pattern, CAPACITY), domain_of(), strips_of(), faces_of(), np.empty((AXES, 2)), np.zeros(1, FOOTPRINT),
+        np.full((len(BLOCKS), 3), math.inf),
     )  # fmt: skip
 
 
@@ -45,54 +50,93 @@ HELD, MADE, FULL = 0, 1, 2
 
 @leaf
 def surround(
-    pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], size: float, local: Local
-) -> int:  # fmt: skip
-    """See to it that the faces hold all that a footprint of this size (pattern units) needs: HELD as they were, MADE
-    anew, or FULL, where that is too much."""
-    held = local.made[0] > 0.0 and 0.5 * local.made[0] <= size <= 2.0 * local.made[0]
-    held = held and spread(pattern, frame, view, lights, local.domain, local.slab)
-    if held and holds(local.domain, local.slab):
-        return HELD
-    aim(frame, view, lights, local.domain)
-    local.made[0] = 0.0
-    if not spread(pattern, frame, view, lights, local.domain, local.slab) or not make(pattern, size, local):
-        return FULL
-    local.made[0] = size
-    return MADE
+    pattern: Pattern, frame: np.void, footprint: np.void, flat: bool, camera: Camera, lights: NDArray[np.void],
+    local: Local,
+) -> tuple[int, View]:  # fmt: skip
+    """See to it that the faces hold all that a footprint needs: HELD as they were, MADE anew, or FULL, where that is
+    too much. The view is that of the square which they are made for.
+
+    flat: its frame is that of all footprints.
+    """
+    square, at = local.square[0], local.at
+    view = view_of(footprint, frame, camera)
+    if frame.eye[2] <= 0.0:
+        return FULL, view
+    for k in range(len(BLOCKS)):
+        side = BLOCKS[k]
+        if side > 0:
+            x, y = math.floor(footprint.x / side), math.floor(footprint.y / side)
+            tried = at[k, 0] == x and at[k, 1] == y
+            if tried and at[k, 2] == 1.0:
+                return HELD, view
+            if tried or not flat:
+                continue
+            at[k, 0], at[k, 1], at[k, 2] = x, y, 0.0
+            square.x, square.y, square.size = x * side, y * side, side
+            if is_grazing(square, frame, camera):
+                continue
+            view = view_of(square, frame, camera)
+        else:
+            square.x, square.y, square.size = footprint.x, footprint.y, footprint.size
+            view = view_of(square, frame, camera)
+        for j in range(len(BLOCKS)):
+            if at[j, 2] == 1.0:
+                at[j, 0] = math.inf
+        aim(frame, view, lights, local.domain)
+        size = thinnest(view, 1.0 / max(side, 1))
+        if spread(pattern, frame, view, lights, local.domain, local.slab) and make(pattern, size, FEW[k], local):
+            at[k, 2] = 1.0
+            return MADE, view
+    return FULL, view
 
 
 @leaf
-def make(pattern: Pattern, size: float, local: Local) -> bool:
-    """Make the faces of what a footprint needs, `slab`, and of somewhat more where little is near: `domain`.
+def is_grazing(square: np.void, frame: np.void, camera: Camera) -> bool:
+    """Whether a square comes near the horizon of its plane."""
+    x, y, half = square.x, square.y, 0.5 * square.size
+    middle = slope_at(x + half, y + half, frame, camera)
+    most = middle
+    for k in range(4):
+        most = max(most, slope_at(x + 2.0 * half * (k & 1), y + 2.0 * half * (k >> 1), frame, camera))
+    return most > GRAZING * middle
 
-    size: of the footprint, pattern units. False where there is too much.
-    """
+
+@leaf
+def thinnest(view: View, part: float) -> float:
+    """The least width, pattern units, of a square of this part of a view's sides, in its corners."""
+    least = math.inf
+    for k in range(4):
+        u, v = float(k & 1), float(k >> 1)
+        p0, q0 = on_plane(view, u, v)
+        p1, q1 = on_plane(view, u + part * (1.0 - 2.0 * u), v)
+        p2, q2 = on_plane(view, u, v + part * (1.0 - 2.0 * v))
+        long = max(math.hypot(p1 - p0, q1 - q0), math.hypot(p2 - p0, q2 - q0))
+        least = min(least, abs((p1 - p0) * (q2 - q0) - (p2 - p0) * (q1 - q0)) / long)
+    return least
+
+
+@leaf
+def make(pattern: Pattern, size: float, few: int, local: Local) -> bool:
+    """Make the faces of what a square needs, `slab`, for footprints of this size, pattern units. False where more than
+    `few` pieces are near, or there is no room."""
     domain, slab, found, strips, faces = local.domain, local.slab, local.found, local.strips, local.faces
     m = pattern.reach
     stepped = pattern.height > 0.0
     for groove in pattern.grooves:
         stepped = stepped or groove.priority > 0
-    for k in range(len(AROUND)):
-        more = max(AROUND[k] * size, BEYOND[k] * max(slab[0, 1] - slab[0, 0], slab[1, 1] - slab[1, 0]))
-        settle(domain, slab, more)
-        rim = domain.slab
-        count = find(pattern, found, rim[0, 0] - m, rim[1, 0] - m, rim[0, 1] + m, rim[1, 1] + m, FEW[k])
-        room = count >= 0
-        for i in range(max(count, 0)):  # what overhangs is no height field
-            profile = pattern.grooves[pattern.pieces[found.piece[i]].groove].profile
-            room = room and (
-                len(pattern.part_first) == 0 or pattern.part_first[profile] == pattern.part_first[profile + 1]
-            )
-        strips.made[0] = strips.made[1] = strips.made[2] = 0
-        for i in range(max(count, 0)):
-            if not room:
-                break
-            chunks = divide(
-                pattern, found.piece[i], found.shift[i, 0], found.shift[i, 1], rim, CHORD * size, strips.chunks
-            )
-            room = room and chunks >= 0
-            for j in range(chunks):
-                room = room and lay(pattern, found.piece[i], i, strips.chunks[j], domain, stepped, strips)
-        if room and envelope(strips, domain, pattern.height + pattern.depth, faces):
-            return True
-    return False
+    settle(domain, slab, 0.0)
+    rim = domain.slab
+    count = find(pattern, found, rim[0, 0] - m, rim[1, 0] - m, rim[0, 1] + m, rim[1, 1] + m, few)
+    room = count >= 0
+    for i in range(max(count, 0)):  # what overhangs is no height field
+        profile = pattern.grooves[pattern.pieces[found.piece[i]].groove].profile
+        room = room and (len(pattern.part_first) == 0 or pattern.part_first[profile] == pattern.part_first[profile + 1])
+    strips.made[0] = strips.made[1] = strips.made[2] = 0
+    for i in range(max(count, 0)):
+        if not room:
+            break
+        chunks = divide(pattern, found.piece[i], found.shift[i, 0], found.shift[i, 1], rim, CHORD * size, strips.chunks)
+        room = room and chunks >= 0
+        for j in range(chunks):
+            room = room and lay(pattern, found.piece[i], i, strips.chunks[j], domain, stepped, strips)
+    return room and envelope(strips, domain, pattern.height + pattern.depth, faces)

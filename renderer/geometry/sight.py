@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.faces import FACES, Faces
+from renderer.geometry.local import FULL, HELD, Local, surround
 from renderer.geometry.polygon import CORNERS, Counts
 from renderer.geometry.query import Nearby
 from renderer.geometry.solid import Meeting, normal_of
 from renderer.geometry.view import View
 from renderer.kernel import leaf
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
-from renderer.tables import SCALE_CONSTANT, Floats, Lighting, Pattern
+from renderer.tables import SCALE_CONSTANT, Camera, Floats, Lighting, Pattern
 
 HALVES = 65536  # half-planes of what hides or shades
 
@@ -31,7 +32,7 @@ class Seen(NamedTuple):
     pixels, are triples (a, b, c).
     """
 
-    made: Counts  # (2,) half-planes so far; footprints so far
+    made: Counts  # (1,) half-planes so far
     ray: Floats  # (3, 3) the ray's direction through (x, y): ray (x, y, 1)
     back: Floats  # (3, 3) its inverse
     source: Floats  # (sources, 4) D_p, D_q, D_w, h
@@ -51,11 +52,24 @@ class Seen(NamedTuple):
 def seen_of(lights: int) -> Seen:
     n = lights + 1
     return Seen(
-        np.zeros(2, np.int64), np.empty((3, 3)), np.empty((3, 3)), np.empty((n, 4)), np.empty((FACES, CORNERS, 3)),
+        np.zeros(1, np.int64), np.empty((3, 3)), np.empty((3, 3)), np.empty((n, 4)), np.empty((FACES, CORNERS, 3)),
         np.empty((FACES, 4)), np.empty((FACES, 3)), np.empty((n, FACES)), np.empty((n, FACES), np.int64),
         np.zeros(n, np.int64), np.full((n, FACES, 2), -1, np.int64), np.empty((HALVES, 4)),
         np.empty((FACES, n, 3)), np.full(FACES, -1, np.int64),
     )  # fmt: skip
+
+
+@leaf
+def see(
+    pattern: Pattern, frame: np.void, footprint: np.void, flat: bool, camera: Camera, lights: NDArray[np.void],
+    local: Local, seen: Seen,
+) -> bool:  # fmt: skip
+    """Make ready the faces that a footprint needs, and how they are seen. False where that is too much.
+
+    flat: its frame is that of all footprints.
+    """
+    held, view = surround(pattern, frame, footprint, flat, camera, lights, local)
+    return held == HELD or (held != FULL and look(frame, view, local.square[0], lights, local.faces, seen))
 
 
 @leaf

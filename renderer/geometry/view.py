@@ -77,3 +77,12 @@ def on_plane(view: View, u: float, v: float) -> tuple[float, float]:
     """The point of the base plane that (u, v) shows."""
     w = view.wu * u + view.wv * v + view.w1
     return (view.pu * u + view.pv * v + view.p1) / w, (view.qu * u + view.qv * v + view.q1) / w
+
+
+@leaf
+def slope_at(x: float, y: float, frame: np.void, camera: Camera) -> float:
+    """How fast the ray through the screen point (x, y) falls to the base plane: the direction's w, below 0."""
+    c, r, d = camera.corner, camera.right, camera.down
+    return direction_to_pattern(
+        frame, (c[0] + x * r[0] + y * d[0], c[1] + x * r[1] + y * d[1], c[2] + x * r[2] + y * d[2])
+    )[2]
