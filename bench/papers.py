@@ -89,7 +89,8 @@ def cases() -> list[Case]:
              (auto, Setting("auto", 16), *_geometry(8)), 8, 110.0),
         Case("16 (a)", Said(20, 14, 71, 4232), "figure 15's floor from farther away, two near point lights",
              farther(), (auto, Setting("auto", 16), *_geometry(16)), 16, 110.0),
-        Case("16 (b)", Said(13, 14, 71, 4232), "two line samples at intersections: this version has no such method"),
+        Case("16 (b)", Said(13, 14, 71, 4232), "the same, by two line samples",
+             farther(), (Setting("lines", 2), Setting("lines", 8), Setting("area"), *_geometry(16)), 16, 110.0),
         Case("17", Said(46, 16, 387, 656), "one mirror bounce inside the grooves: no method here renders bounces yet"),
         Case("19", Said(31, 486), "records of 500 circles; the report's top left", vinyl,
              (Setting("auto", 16), Setting("auto", 4), Setting("line"), Setting("csg", 1), Setting("csg", 4),
@@ -266,7 +267,7 @@ def _number(value: float) -> str:
 
 
 def _file(case: Case) -> str:
-    return f"figure-{case.figure.split()[0]}.jpg"
+    return "figure-" + "".join(c for c in case.figure if c.isalnum()) + ".jpg"
 
 
 def _scene(told: Any) -> schema.Scene:

@@ -26,7 +26,18 @@ from numpy.typing import NDArray
 from renderer.geometry.faces import Faces
 from renderer.geometry.local import BLOCKS, local_of
 from renderer.geometry.polygon import CORNERS, Counts, area, subtract
-from renderer.geometry.sight import Seen, colour_at, halves_of, is_bent, may_hide, see, seen_of
+from renderer.geometry.sight import (
+    Seen,
+    colour_at,
+    halves_of,
+    is_bent,
+    is_plain,
+    may_hide,
+    see,
+    seen_of,
+    slot_of,
+    tinge,
+)
 from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.tables import AREA, DIRECTIONAL, Camera, Floats, Lighting, Pattern
 
@@ -178,23 +189,12 @@ def area_sampling(
                 break
             if n == 0:
                 continue
-            slot = 0
-            if faces.tag[f, 0] >= 0 and faces.tag[f, 1] >= 0:
-                groove = pattern.grooves[pattern.pieces[found.piece[faces.tag[f, 0]]].groove]
-                slot = pattern.facet_slot[groove.slot + faces.tag[f, 1]] + 1
-            material = materials[slots[slot]]
+            material = materials[slots[slot_of(pattern, f, found, faces)]]
             bent = is_bent(pattern, f, found, faces)
             chorded = chorded or bent
-            plain = distant and not bent and material.metallic == 0.0 and material.f90 == 0.0
-            if plain and seen.tinted[f] < 0:
-                seen.tinted[f] = 0
-                x, y = square.x + 0.5 * square.size, square.y + 0.5 * square.size
-                for l in range(eye + 1):
-                    r, g, b = colour_at(
-                        f, l if l < eye else -1, x, y, pattern, frame, lighting, material, albedo, bent, found, faces,
-                        seen,
-                    )  # fmt: skip
-                    seen.tint[f, l, 0], seen.tint[f, l, 1], seen.tint[f, l, 2] = r, g, b
+            plain = distant and not bent and is_plain(material)
+            if plain:
+                tinge(f, square, pattern, frame, lighting, material, albedo, found, faces, seen)
             for source in range(eye, -1, -1):
                 light = source if source < eye else -1
                 which, m = 0, n

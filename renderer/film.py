@@ -16,8 +16,12 @@ from renderer.tables import METHODS, Floats
 SUFFIXES = (".png", ".exr", ".npy")
 
 COLOURS = np.array(
-    [[0, 0, 0], [90, 90, 90], [60, 120, 200], [70, 170, 110], [220, 120, 50], [190, 60, 120], [230, 200, 70]], np.uint8
-)
+    [
+        [0, 0, 0], [90, 90, 90], [60, 120, 200], [70, 170, 110], [220, 120, 50], [190, 60, 120], [230, 200, 70],
+        [140, 100, 200], [90, 200, 210],
+    ],
+    np.uint8,
+)  # fmt: skip
 """How the AOV `method` looks as PNG, by METHODS."""
 
 

@@ -25,6 +25,7 @@ from renderer.csg import csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
 from renderer.line import LOOSE, NOT_MINE, PAPER, STRICT, line
+from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
 from renderer.tables import BARE, BASE, Floats, Pattern
@@ -32,7 +33,7 @@ from renderer.trace import Truth
 
 TILE = 64  # pixels
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
-METHODS = ("auto", "base", "segment", "line", "area", "csg", "geometry", "relief")
+METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
 AOVS = ("method",)
 
 _READY = CACHE / "ready"  # written once all kernels have been compiled
@@ -57,6 +58,7 @@ class Settings(NamedTuple):
 
     method: str
     samples: int
+    points: int  # samples of what the method leaves to csg
     seed: int
     texels: int
 
@@ -135,17 +137,20 @@ class Frame:
         if isinstance(self.model, Textures) and pattern is not BARE:
             relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
             return timed("relief", start)
-        if settings.method == "area" and pattern is not BARE:
-            flat = int(row) in self.flat
-            area_sampling(flat, pattern, seen.footprints, in_blocks(seen.footprints, chosen), *rest)
-            timed("area", start)
+        if settings.method in ("lines", "area") and pattern is not BARE:
+            flat, ordered = int(row) in self.flat, in_blocks(seen.footprints, chosen)
+            if settings.method == "lines":
+                line_sampling(settings.samples, settings.seed, flat, pattern, seen.footprints, ordered, *rest)
+            else:
+                area_sampling(flat, pattern, seen.footprints, ordered, *rest)
+            timed(settings.method, start)
         else:
             line(MODES.get(settings.method, LOOSE), pattern, seen.footprints, chosen, *rest)
             timed("line", start)
         left = chosen[method[chosen] == NOT_MINE]
         if len(left):
             start = time.perf_counter()
-            csg(settings.samples, True, settings.seed, pattern, seen.footprints, left, *rest)
+            csg(settings.points, True, settings.seed, pattern, seen.footprints, left, *rest)
             timed("csg", start)
         return None
 
@@ -172,9 +177,11 @@ def render(
     Raises RenderError where the scene cannot be rendered, Cancelled where `cancelled` says so.
     """
     begin = time.perf_counter()
+    method = method or scene.render.method
     settings = Settings(
-        method or scene.render.method,
-        samples or scene.render.samples,
+        method,
+        samples or scene.render.samples_of(method),
+        scene.render.samples if method == "lines" else samples or scene.render.samples,
         scene.render.seed,
         texels or scene.render.texels,
     )
@@ -183,7 +190,10 @@ def render(
     has_mesh = any(isinstance(item.shape, schema.Mesh) for item in scene.objects)
     seconds = {
         "kernels": warm_up(
-            geometry=settings.method == "geometry", textures=settings.method == "relief", meshes=has_mesh
+            lines=method == "lines",
+            geometry=method == "geometry",
+            textures=settings.method == "relief",
+            meshes=has_mesh,
         )
     }
     start = time.perf_counter()
@@ -308,10 +318,10 @@ def kernels_compiled() -> bool:
 _warm: set[str] = set()
 
 
-def warm_up(*, geometry: bool = False, textures: bool = False, meshes: bool = False) -> float:
+def warm_up(*, lines: bool = False, geometry: bool = False, textures: bool = False, meshes: bool = False) -> float:
     """Compile the kernels, or load them from their cache: the seconds that took, next to none from the second call.
 
-    The kernels of methods `geometry` and `relief`, and those of mesh files, are left until they are asked for.
+    The kernels of methods `lines`, `geometry` and `relief`, and those of mesh files, are left until they are asked for.
     """
     begin = time.perf_counter()
     if "analytic" not in _warm:
@@ -320,6 +330,9 @@ def warm_up(*, geometry: bool = False, textures: bool = False, meshes: bool = Fa
         _try("csg", {"type": "sphere", "radius": 1})
         _READY.touch()
         _warm.add("analytic")
+    if lines and "lines" not in _warm:
+        _try("lines", {"type": "sphere", "radius": 1})
+        _warm.add("lines")
     if geometry and "geometry" not in _warm:
         _try("geometry", {"type": "rectangle", "size": [2, 2]})
         _try("geometry", {"type": "sphere", "radius": 1})
@@ -359,4 +372,4 @@ def _try(method: str, shape: dict[str, object]) -> None:
         model = _truth(compiled)
     elif method == "relief":
         model = _textures(compiled, 16, 1, None)
-    _frame(compiled, Settings(method, 1, 0, 16), model).tile(Tile(0, 0, 2, 2))
+    _frame(compiled, Settings(method, 1, 1, 0, 16), model).tile(Tile(0, 0, 2, 2))

@@ -231,6 +231,6 @@ class Lighting(NamedTuple):
     sky: Floats  # (3,) radiance of the constant sky
 
 
-METHODS = ("none", "base", "segment", "line", "csg", "geometry", "relief", "area")
+METHODS = ("none", "base", "segment", "line", "csg", "geometry", "relief", "area", "lines")
 """What the AOV `method` counts: the index of the method that a pixel took; `none` where the camera sees no object."""
-NONE, BASE, SEGMENT_METHOD, LINE, CSG, GEOMETRY, RELIEF, AREA = range(8)
+NONE, BASE, SEGMENT_METHOD, LINE, CSG, GEOMETRY, RELIEF, AREA, LINES = range(9)

@@ -15,6 +15,7 @@ from .shapes import Shape
 MAX_PIXELS = 33_554_432
 # The sine of the least angle between the view and `up`, below which `up` no longer tells which way the image stands.
 MIN_UP_SINE = 1e-6
+LINES = 2  # samples of method `lines` where none are told
 
 Side = Annotated[int, Field(ge=1, le=8192)]
 MappingScale = Annotated[float, Field(ge=1e-6, le=1e6)]
@@ -82,13 +83,17 @@ class Object(Model):
 class Render(Model):
     """How to render."""
 
-    method: Literal["auto", "base", "segment", "line", "area", "csg", "geometry", "relief"] = Field(
+    method: Literal["auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief"] = Field(
         default="auto",
-        description="auto takes the cheapest that keeps within `tolerance`; base leaves the grooves out; geometry "
-        "meshes them; relief marches rays through a texture of their heights. Default: auto.",
+        description="auto takes the cheapest that keeps within `tolerance`; base leaves the grooves out; lines looks "
+        "along `samples` lines across a pixel, area at all of it; geometry meshes the grooves; relief marches rays "
+        "through a texture of their heights. Default: auto.",
     )
     samples: int = Field(
-        default=256, ge=1, le=65_536, description="Stratified samples a pixel where a method samples. Default: 256."
+        default=256,
+        ge=1,
+        le=65_536,
+        description="Stratified samples a pixel where a method samples. Default: 256; 2 of method lines.",
     )
     texels: int = Field(
         default=1024,
@@ -105,6 +110,10 @@ class Render(Model):
         default=1.0, ge=1e-6, le=1e6, description="Factor on the radiance in PNG files, a pure number. Default: 1."
     )
     seed: Seed = Field(default=0, description="The seed of all random samples, a whole number. Default: 0.")
+
+    def samples_of(self, method: str) -> int:
+        """How many samples a method takes."""
+        return LINES if method == "lines" and "samples" not in self.model_fields_set else self.samples
 
 
 class Scene(Model):

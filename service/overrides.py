@@ -9,7 +9,7 @@ from schema import Render
 from schema.scene import MAX_PIXELS
 
 METHODS: tuple[str, ...] = get_args(Render.model_fields["method"].annotation)
-SAMPLED = frozenset({"auto", "csg", "geometry", "relief"})  # the methods that take samples
+SAMPLED = frozenset({"auto", "lines", "csg", "geometry", "relief"})  # the methods that take samples
 MAX_SIDE = 8192  # as the camera's
 
 

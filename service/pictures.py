@@ -50,8 +50,8 @@ def checked_for_service(text: bytes, wish: Wish, settings: Settings, meshes: Mes
     if problems:
         raise scene_error(problems)
     width, height = wish.resolution or scene.camera.resolution
-    sampled = (wish.method or scene.render.method) in overrides.SAMPLED
-    samples = (wish.samples or scene.render.samples) if sampled else 1
+    method = wish.method or scene.render.method
+    samples = (wish.samples or scene.render.samples_of(method)) if method in overrides.SAMPLED else 1
     for count, limit, what in (
         (width * height, settings.pixel_limit, "pixels"),
         (width * height * samples, settings.sample_limit, "samples in all pixels"),

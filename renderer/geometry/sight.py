@@ -235,6 +235,38 @@ def colour_at(
 
 
 @leaf
+def slot_of(pattern: Pattern, f: int, found: Nearby, faces: Faces) -> int:
+    """Which of the materials of the pattern's facets a face has; 0: the object's own."""
+    if faces.tag[f, 0] < 0 or faces.tag[f, 1] < 0:
+        return 0
+    groove = pattern.grooves[pattern.pieces[found.piece[faces.tag[f, 0]]].groove]
+    return int(pattern.facet_slot[groove.slot + faces.tag[f, 1]]) + 1
+
+
+@leaf
+def tinge(
+    f: int, square: np.void, pattern: Pattern, frame: np.void, lighting: Lighting, material: np.void, albedo: Floats,
+    found: Nearby, faces: Faces, seen: Seen,
+) -> None:  # fmt: skip
+    """Fill `seen.tint` of a face whose colours are the same everywhere, as seen in the middle of this square."""
+    if seen.tinted[f] >= 0:
+        return
+    seen.tinted[f] = 0
+    x, y, eye = square.x + 0.5 * square.size, square.y + 0.5 * square.size, len(lighting.lights)
+    for l in range(eye + 1):
+        r, g, b = colour_at(
+            f, l if l < eye else -1, x, y, pattern, frame, lighting, material, albedo, False, found, faces, seen
+        )
+        seen.tint[f, l, 0], seen.tint[f, l, 1], seen.tint[f, l, 2] = r, g, b
+
+
+@leaf
+def is_plain(material: np.void) -> bool:
+    """Whether a material looks the same from everywhere."""
+    return bool(material.metallic == 0.0 and material.f90 == 0.0)
+
+
+@leaf
 def is_bent(pattern: Pattern, f: int, found: Nearby, faces: Faces) -> bool:
     """Whether the normal of a face is not the same all over."""
     if faces.tag[f, 0] < 0 or faces.tag[f, 2] != 0:

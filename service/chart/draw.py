@@ -26,6 +26,7 @@ from service.chart.report import Results, Row, words
 STYLES = {
     "base": ("#000000", "X"), "segment": ("#CC79A7", "D"), "line": ("#0072B2", "*"), "auto": ("#009E73", "s"),
     "csg": ("#E69F00", "^"), "geometry": ("#D55E00", "o"), "relief": ("#56B4E9", "P"),
+    "area": ("#8B6B1F", "h"), "lines": ("#6A3D9A", "d"),
 }  # fmt: skip
 OTHER = ("#666666", "v")
 DPI = 110

@@ -10,8 +10,8 @@ from renderer import pipeline
 
 REFERENCES = ("geometry", "csg")  # what may serve as the reference, the better one first
 LADDERS = {
-    "base": (), "segment": (), "line": (), "auto": (4, 16, 64, 256), "csg": (1, 4, 16, 64, 256),
-    "geometry": (4, 16, 64, 256, 1024), "relief": (1, 4, 16),
+    "base": (), "segment": (), "line": (), "area": (), "auto": (4, 16, 64, 256), "lines": (2, 8, 32),
+    "csg": (1, 4, 16, 64, 256), "geometry": (4, 16, 64, 256, 1024), "relief": (1, 4, 16),
 }  # fmt: skip
 TEXELS = (256, 512, 1024, 2048)  # of method `relief`
 MINE = 1  # the seed of a setting's first picture; the next ones follow

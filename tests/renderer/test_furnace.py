@@ -38,7 +38,7 @@ LAMPS = {
 """Each part of a footprint shines in a colour of its own: its share is what the pixel shows of it."""
 
 
-@pytest.mark.parametrize("method", ["base", "segment", "line", "csg", "auto", "geometry", "relief"])
+@pytest.mark.parametrize("method", ["base", "segment", "line", "lines", "area", "csg", "auto", "geometry", "relief"])
 def test_furnace(method: str, plate: Plate, radiance: Radiance) -> None:
     """White facets reflect all of a white sky, and no sky is taken away yet: every pixel is exactly 1.
 
@@ -62,7 +62,7 @@ def test_emission_adds(plate: Plate, radiance: Radiance) -> None:
     assert glowing[..., 0].max() > 1.5
 
 
-@pytest.mark.parametrize("method", ["line", "csg", "auto", "segment"])
+@pytest.mark.parametrize("method", ["line", "lines", "area", "csg", "auto", "segment"])
 def test_grooves_of_no_depth_are_the_bare_plate(method: str, plate: Plate, radiance: Radiance) -> None:
     flat = [[b, w * 1e-9] for b, w in SKEW]
     sun = {"type": "directional", "direction": [1, 0.45, -0.9], "irradiance": [3, 3, 3]}
@@ -83,14 +83,14 @@ def shares(radiance: Radiance, scene: Json, method: str, samples: int = 9) -> Fl
     return found
 
 
-@pytest.mark.parametrize("method", ["csg", "auto", "geometry"])
+@pytest.mark.parametrize("method", ["lines", "area", "csg", "auto", "geometry"])
 @pytest.mark.parametrize("origin", [[0.1, -1.9, 1.7], [0, -1.4, 0.2]])
 def test_shares_sum_to_one(method: str, origin: list[float], plate: Plate, radiance: Radiance) -> None:
     found = shares(radiance, plate(MIXED, camera={"origin": origin}, materials=PALETTE), method)
     assert (found.max(axis=(0, 1)) > 0.5).all()
 
 
-@pytest.mark.parametrize("method", ["csg", "auto"])
+@pytest.mark.parametrize("method", ["lines", "area", "csg", "auto"])
 @pytest.mark.parametrize(
     "shape", [{"type": "sphere", "radius": 1}, {"type": "cylinder", "radius": 0.8, "height": 1.5}], ids=["ball", "can"]
 )
@@ -105,7 +105,7 @@ def test_shares_sum_to_one_on_curved_objects(method: str, shape: Json, plate: Pl
 @given(
     outline=OUTLINES, other=OUTLINES, step=st.floats(0.01, 0.6), angle=st.floats(-1, 1),
     reach=st.sampled_from([0.03, 0.3, 2.0, 30.0]), low=st.sampled_from([0.05, 0.4, 1.5]),
-    method=st.sampled_from(["line", "segment", "auto"]),
+    method=st.sampled_from(["line", "lines", "area", "segment", "auto"]),
 )  # fmt: skip
 def test_shares_of_parallel_grooves(
     plate: Plate, radiance: Radiance, outline: list[list[float]], other: list[list[float]], step: float, angle: float,

@@ -1,4 +1,4 @@
-"""`csg`, `line`, `area` and `auto` against the meshed solid, traced.
+"""`csg`, `line`, `lines`, `area` and `auto` against the meshed solid, traced.
 
 *csg* draws the same samples as *geometry* for the same seed, so that the two pictures differ by no noise at all: only
 where a sample falls so near to an edge that rounding puts it on the other side of it. One such sample changes a pixel
@@ -7,9 +7,9 @@ M / n * sqrt(k / P). All of the 100,000 samples but FLIPS have to agree. Where t
 normals are those of its chords: wrong by up to half the angle a between two rings, where a chord leaves its arc by
 a R (a / 8) = ARC, and so is the light that they reflect by as large a part.
 
-*line*, *area* and *auto* are held against samples drawn from another seed. The samples' noise s is measured, from two
-seeds; the RMSE of a faultless picture is s, that of its mean over P pixels s / sqrt(P). What they approximate (one
-colour a facet and footprint) adds to that, by half of auto's tolerance at the most, and leaves the mean alone.
+*line*, *lines*, *area* and *auto* are held against samples drawn from another seed. The samples' noise s is measured,
+from two seeds; the RMSE of a faultless picture is s, that of its mean over P pixels s / sqrt(P). What they approximate
+(one colour a facet and footprint) adds to that, by half of auto's tolerance at the most, and leaves the mean alone.
 """
 
 from __future__ import annotations
@@ -276,6 +276,7 @@ def test_against_the_solid(
     area = picture(scene, method="area")
     agree(area.radiance.astype(np.float64), other, truth, "area")
     assert area.shares.get("area", 0.0) > (0.9 if name in CURVES or "scale" in grooves[0] else 0.9999)
+    agree(render("lines"), other, truth, "lines")
     if name in PARALLEL and name != "lamp between ridges":
         agree(render("line"), other, truth, "line")
         assert auto.shares.get("csg", 0.0) == 0.0

@@ -38,8 +38,8 @@ CASES: list[tuple[str, Any, str]] = [
     ("/objects/0/material", "gold",
      f'/objects/0/material: expected the name of a material {VALID_NAMES}, found "gold"'),
     ("/objects/0/pattern", "nope", '/objects/0/pattern: expected the name of a pattern ("tiles"), found "nope"'),
-    ("/render/method", LONG, '/render/method: expected one of "auto", "base", "segment", "line", "csg", "geometry", '
-     '"relief", found "' + "x" * 78 + "…"),
+    ("/render/method", LONG, '/render/method: expected one of "auto", "base", "segment", "line", "lines", "area", '
+     '"csg", "geometry", "relief", found "' + "x" * 78 + "…"),
     (G + "/material", "gold", f'{G}/material: expected the name of a material {VALID_NAMES}, found "gold"'),
     (G + "/material", ["stone"], f"{G}/material: expected 2 materials, one a facet, found 1"),
     (G + "/path/points", [[0, 0]], f"{G}/path/points: expected an array of 2 to 100000, each an array of 2 to 3, "

@@ -7,7 +7,7 @@ import { freshId, h } from "../ui/dom";
 import { Fields, numberInput, show } from "../ui/fields";
 import type { Binder, PanelPlan } from "../ui/panel";
 
-const METHODS = ["auto", "base", "segment", "line", "area", "csg", "geometry", "relief"].map((name) => [name, name] as const);
+const METHODS = ["auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief"].map((name) => [name, name] as const);
 
 export function cameraPanel(editor: Editor): PanelPlan {
   return {
