@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.faces import Faces
-from renderer.geometry.local import BLOCKS, local_of
+from renderer.geometry.local import BLOCKS, FULL, local_of
 from renderer.geometry.polygon import CORNERS, Counts, area, subtract
 from renderer.geometry.sight import (
     Seen,
@@ -38,6 +38,7 @@ from renderer.geometry.sight import (
     slot_of,
     tinge,
 )
+from renderer.geometry.strips import STRIPS as STRIPS
 from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.tables import AREA, DIRECTIONAL, Camera, Floats, Lighting, Pattern
 
@@ -45,7 +46,8 @@ NOT_MINE = 255  # in `method`: left to another method
 PARTS = 512  # polygons that are left of one face
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 1e-6  # the shares of a footprint sum to one within this, or it is left to another method
-CHORDED = 4e-3  # ... where chords stand for arcs and steps for scales: the shares are then divided by their sum
+CHORDED = 2.0  # ... tolerances, where chords stand for arcs and steps for scales: shares are then divided by their sum
+BENT = 0.5  # the error where chords stand for arcs, in tolerances
 
 
 class Parts(NamedTuple):
@@ -149,14 +151,15 @@ def in_blocks(footprints: NDArray[np.void], chosen: NDArray[np.int64]) -> NDArra
 
 @kernel
 def area_sampling(
-    flat: bool, pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void],
-    camera: Camera, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats,
-    radiance: Floats, method: NDArray[np.uint8],
+    tolerance: float, most: int, flat: bool, pattern: Pattern, footprints: NDArray[np.void],
+    chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera, lighting: Lighting,
+    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, radiance: Floats, method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
-    """Shade the footprints `chosen` of one object; write their radiance (n, 3) and method.
+    """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
-    flat: they share one frame. NOT_MINE where too much is near, or where the shares do not sum to one. slots: rows of
-    `materials` for the pattern's facets, the object's own first.
+    tolerance: the error to keep within, relative to a white surface in the same light. flat: they share one frame.
+    NOT_MINE where more than `most` strips are near, or where the shares do not sum to one. slots: rows of `materials`
+    for the pattern's facets, the object's own first.
     """
     owned = local_of(pattern), seen_of(len(lighting.lights)), parts_of()
     local, seen, parts = borrow(owned[0]), borrow(owned[1]), borrow(owned[2])
@@ -172,9 +175,10 @@ def area_sampling(
         footprint = footprints[index]
         frame = frames[footprint.frame]
         method[index] = NOT_MINE
-        if not see(pattern, frame, footprint, flat, camera, lights, local, seen):
+        if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:
             continue
         red = green = blue = whole = 0.0
+        cost = faces.made[0] + (local.strips.made[0] * footprint.size / square.size) ** 2
         room, chorded = True, False
         for f in range(faces.made[0]):
             if seen.facing[eye, f] <= 0.0:
@@ -192,6 +196,7 @@ def area_sampling(
             material = materials[slots[slot_of(pattern, f, found, faces)]]
             bent = is_bent(pattern, f, found, faces)
             chorded = chorded or bent
+            cost += seen.aways[eye]
             plain = distant and not bent and is_plain(material)
             if plain:
                 tinge(f, square, pattern, frame, lighting, material, albedo, found, faces, seen)
@@ -210,6 +215,7 @@ def area_sampling(
                                 parts.polygon[1, i, j, 0] = parts.polygon[0, i, j, 0]
                                 parts.polygon[1, i, j, 1] = parts.polygon[0, i, j, 1]
                             parts.corners[1, i] = parts.corners[0, i]
+                        cost += n * seen.aways[light]
                         m = hide(light, f, 1, n, footprint, faces, seen, parts)
                         if m < 0:
                             room = False
@@ -242,8 +248,10 @@ def area_sampling(
                             red, green, blue = red + share * r, green + share * g, blue + share * b
             if not room:
                 break
-        if not room or not abs(whole - 1.0) <= (CHORDED if chorded else WHOLE):
+        if not room or not abs(whole - 1.0) <= (CHORDED * tolerance if chorded else WHOLE):
             continue
         method[index] = AREA
+        radiance[index, 3] = abs(whole - 1.0) + (BENT * tolerance if chorded else 0.0)
+        radiance[index, 4] = cost
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / whole, green / whole, blue / whole
     keep(owned)

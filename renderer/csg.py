@@ -1,8 +1,9 @@
 """Method `csg`: rays against the spans of added and removed material (003), n stratified samples a footprint.
 
-Right for every case, however slow. `auto` sends it what no cheaper method takes, and then a footprint whose corners
-and first few samples all fall on one facet, all lit alike, is left at those: what one straight edge cuts off a
-footprint has one of its corners in it.
+Right for every case, however slow. `auto` sends it what no cheaper method takes, with a tolerance. Then a footprint
+whose corners and first few samples all fall on one facet, all lit alike, is left at those: what one straight edge cuts
+off a footprint has one of its corners in it. Any other gets as many as bring the predicted error within the tolerance:
+that of a mean of strata, whose variances the differences of neighbours tell.
 """
 
 from __future__ import annotations
@@ -18,24 +19,29 @@ from renderer.geometry.solid import OPEN, lift, meet, normal_of, polish
 from renderer.geometry.spans import NO, YES, events
 from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
-from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
+from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit, white
 from renderer.tables import CSG, Camera, Lighting, Pattern
 
 SHARED = fixed(32)  # up to so many pieces are found once for all samples of a footprint
 LEVEL = 1e-6  # a light's slope to the plane is taken for at least this
-PROBE = 4  # `auto` begins with the corners and PROBE * PROBE samples
+PROBE = 4  # with a tolerance it begins with the corners and PROBE * PROBE samples,
+FIRST = 8  # then takes FIRST * FIRST,
+MOST = 64  # and at most MOST * MOST
+SURE = 0.5  # how much of the tolerance the standard error may take
 
 
 @kernel
 def csg(
-    samples: int, probe: bool, seed: int, pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64],
-    frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void],
-    slots: NDArray[np.int32], albedo: NDArray[np.float64], radiance: NDArray[np.float64], method: NDArray[np.uint8],
+    samples: int, tolerance: float, seed: int, pattern: Pattern, footprints: NDArray[np.void],
+    chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera, lighting: Lighting,
+    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: NDArray[np.float64],
+    radiance: NDArray[np.float64], method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
-    """Shade the footprints `chosen` of one object; write their radiance (n, 3) and method.
+    """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
-    samples: at least so many a footprint, in a grid of strata. slots: rows of `materials` for the pattern's facets,
-    the object's own first.
+    samples: at least so many a footprint, in a grid of strata, where the tolerance is 0; else as many as that asks for,
+    which is the error relative to a white surface in the same light. slots: rows of `materials` for the pattern's
+    facets, the object's own first.
     """
     owned = nearby(pattern, max(pattern.near, SHARED)), events(pattern)
     found, spans = borrow(owned[0]), borrow(owned[1])
@@ -44,6 +50,7 @@ def csg(
     lights, eye = lighting.lights, camera.origin
     high, low = pattern.height, -pattern.depth
     thin = 1e-6 * (high - low) + 1e-300
+    above = np.zeros(MOST)
     for index in chosen:
         footprint = footprints[index]
         frame = frames[footprint.frame]
@@ -73,21 +80,25 @@ def csg(
         margin = pattern.reach
         shared = find(pattern, found, fp0 - margin, fq0 - margin, fp1 + margin, fq1 + margin, SHARED)
 
-        columns = int(math.ceil(math.sqrt(samples)))
-        rows = (samples + columns - 1) // columns
+        across = int(math.ceil(math.sqrt(samples)))
+        down = (samples + across - 1) // across
+        corners = 0
+        target = 0.0
+        if tolerance > 0.0:
+            across, down, corners = PROBE, PROBE, 4
+            target = SURE * tolerance * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)
-        red = green = blue = 0.0
-        taken = 0
-        for stage in range(2):
-            across, down = (PROBE, PROBE) if stage == 0 else (columns, rows)
-            if stage == 0 and (not probe or samples <= PROBE * PROBE):
-                continue
+        red = green = blue = error = 0.0
+        taken = looked = 0
+        while True:
             red = green = blue = 0.0
             taken = 0
+            unlike = 0.0
+            last = 0.0
             alike = True
             first_facet, first_found, first_lit = 0, 0, np.uint64(0)
-            corners = 4 if stage == 0 else 0  # looked at, not counted
-            for i in range(-corners, across * down):
+            for i in range(-corners, across * down):  # the corners are looked at, not counted
+                before = red + green + blue
                 if i < 0:
                     u, v = float((-1 - i) & 1), float((-1 - i) >> 1)
                 else:
@@ -146,13 +157,33 @@ def csg(
                     first_facet, first_found, first_lit = m.facet, item, lit
                 elif m.facet != first_facet or item != first_found or lit != first_lit:
                     alike = False
-                    if stage == 0:
+                    if corners > 0:
                         break
                 if i == -1:
                     red = green = blue = 0.0
                 elif i >= 0:
                     taken += 1
-            if stage == 0 and alike:
+                    if tolerance > 0.0:
+                        value = (red + green + blue - before) / 3.0
+                        column = i % across
+                        if column > 0:
+                            unlike += (value - last) ** 2
+                        if i >= across:
+                            unlike += (value - above[column]) ** 2
+                        above[column] = last = value
+            looked += taken
+            if tolerance <= 0.0 or (corners > 0 and alike):
                 break
+            if corners > 0:
+                across, down, corners = FIRST, FIRST, 0
+                continue
+            pairs = across * (down - 1) + down * (across - 1)
+            error = math.sqrt(unlike / (2.0 * pairs) / taken)
+            if error <= target or across >= MOST:
+                break
+            across = min(int(math.ceil(1.05 * across * (error / target) ** (2.0 / 3.0))), MOST)
+            down = across
+        radiance[index, 3] = error / SURE
+        radiance[index, 4] = float(looked) * max(shared, 1)
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / taken, green / taken, blue / taken
     keep(owned)

@@ -13,6 +13,7 @@ from PIL import Image
 from renderer.kernel import kernel
 from renderer.tables import METHODS, Floats
 
+Aov = NDArray[np.uint8] | NDArray[np.float32]
 SUFFIXES = (".png", ".exr", ".npy")
 
 COLOURS = np.array(
@@ -30,9 +31,11 @@ def develop(
     footprints: NDArray[np.void], radiance: Floats, method: NDArray[np.uint8], sky: Floats, image: Floats,
     methods: NDArray[np.uint8],
 ) -> None:  # fmt: skip
-    """Sum footprints (n,) with their radiance (n, 3) into a tile's pixels (m, 3); what none covers shows the sky.
+    """Sum footprints (n,) with their radiance, error and cost (n, 5) into a tile's pixels (m, 5); what none covers
+    shows the sky.
 
-    A pixel's method is the dearest that any part of it took. Parts come in a fixed order, so that sums round alike.
+    A pixel's method is the last of METHODS that any part of it took. Parts come in a fixed order, so that sums round
+    alike.
     """
     covered = np.zeros(len(image))
     image[:] = 0.0
@@ -41,8 +44,9 @@ def develop(
         pixel, weight = footprints[i].pixel, footprints[i].size * footprints[i].size
         covered[pixel] += weight
         methods[pixel] = max(methods[pixel], method[i])
-        for c in range(3):
+        for c in range(4):
             image[pixel, c] += weight * radiance[i, c]
+        image[pixel, 4] += radiance[i, 4]
     for pixel in range(len(image)):
         open_part = max(1.0 - covered[pixel], 0.0)
         for c in range(3):
@@ -60,15 +64,19 @@ def encode(radiance: NDArray[np.float32], suffix: str, exposure: float = 1.0) ->
     raise ValueError(f"expected one of {', '.join(SUFFIXES)}, found {suffix!r}")
 
 
-def encode_aov(values: NDArray[np.uint8], suffix: str) -> bytes:
-    """The AOV `method` (H, W), indices of METHODS: .png in colours, .exr (channel `method`, float) or .npy."""
-    if suffix == ".png":
-        return _png(COLOURS[values])
+def encode_aov(name: str, values: Aov, suffix: str) -> bytes:
+    """An AOV (H, W): .exr (a channel of its name, float) or .npy as it is; .png: `method` in colours, others from black
+    for 0 to white for the largest value, by their roots."""
     if suffix == ".npy":
         return _npy(values)
     if suffix == ".exr":
-        return exr({"method": values.astype(np.float32)})
-    raise ValueError(f"expected one of {', '.join(SUFFIXES)}, found {suffix!r}")
+        return exr({name: values.astype(np.float32)})
+    if suffix != ".png":
+        raise ValueError(f"expected one of {', '.join(SUFFIXES)}, found {suffix!r}")
+    if name == "method":
+        return _png(COLOURS[values.astype(np.int64)])
+    grey = np.sqrt(values / max(float(values.max()), 1e-30))
+    return _png(np.repeat(np.asarray(grey * 255.0 + 0.5, np.uint8)[..., None], 3, axis=2))
 
 
 def srgb(linear: NDArray[np.float32]) -> NDArray[np.uint8]:
@@ -91,7 +99,7 @@ def _png(pixels: NDArray[np.uint8]) -> bytes:
     return out.getvalue()
 
 
-def _npy(values: NDArray[np.float32] | NDArray[np.uint8]) -> bytes:
+def _npy(values: Aov) -> bytes:
     out = io.BytesIO()
     np.save(out, values)
     return out.getvalue()

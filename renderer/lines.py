@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.faces import FACES, Faces
-from renderer.geometry.local import local_of
+from renderer.geometry.local import FULL, local_of
 from renderer.geometry.polygon import CORNERS, Counts
 from renderer.geometry.query import Nearby
 from renderer.geometry.random import jitter, seed_of
@@ -49,7 +49,7 @@ from renderer.tables import DIRECTIONAL, LINES, Camera, Floats, Lighting, Patter
 NOT_MINE = 255  # in `method`: left to another method
 LEAST = 1e-12  # intervals as short as this, of a line's length, are nothing
 WHOLE = 1e-6  # the intervals of a line sum to its length within this, or the footprint is left to another method
-CHORDED = 4e-3  # ... where chords stand for arcs and steps for scales: they are then divided by their sum
+CHORDED = 2.0  # ... tolerances, where chords stand for arcs and steps for scales: they are then divided by their sum
 AT_ONCE = 8  # lines
 ROOM = FACES + 2  # for intervals of a line
 ASIDE = 1e-7  # how far from the middle a single line runs, where scenes that are symmetrical have an edge
@@ -244,14 +244,15 @@ def edges_met(l: int, pattern: Pattern, found: Nearby, faces: Faces, samples: Sa
 
 @kernel
 def line_sampling(
-    count: int, seed: int, flat: bool, pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64],
-    frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void],
-    slots: NDArray[np.int32], albedo: Floats, radiance: Floats, method: NDArray[np.uint8],
+    count: int, seed: int, tolerance: float, most: int, flat: bool, pattern: Pattern, footprints: NDArray[np.void],
+    chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera, lighting: Lighting,
+    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, radiance: Floats, method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
-    """Shade the footprints `chosen` of one object; write their radiance (n, 3) and method.
+    """Shade the footprints `chosen` of one object; write their radiance and cost (n, 5) and method.
 
-    count: lines. flat: the footprints share one frame. NOT_MINE where too much is near, or where the intervals of a
-    line do not cover it. slots: rows of `materials` for the pattern's facets, the object's own first.
+    count: lines. tolerance: of chords. flat: the footprints share one frame. NOT_MINE where more than `most` strips are
+    near, or where the intervals of a line do not cover it. slots: rows of `materials` for the pattern's facets, the
+    object's own first.
     """
     owned = local_of(pattern), seen_of(len(lighting.lights)), samples_of()
     local, seen, samples = borrow(owned[0]), borrow(owned[1]), borrow(owned[2])
@@ -267,7 +268,7 @@ def line_sampling(
         footprint = footprints[index]
         frame = frames[footprint.frame]
         method[index] = NOT_MINE
-        if not see(pattern, frame, footprint, flat, camera, lights, local, seen):
+        if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:
             continue
         x0, y0, size = footprint.x, footprint.y, footprint.size
         state = seed_of(seed, x0, y0)
@@ -368,7 +369,7 @@ def line_sampling(
                     break
             for l in range(lines):
                 colour, mean = samples.colour[l], samples.mean[samples.down[l]]
-                if not abs(colour[3] - 1.0) <= (CHORDED if chorded else WHOLE):
+                if not abs(colour[3] - 1.0) <= (CHORDED * tolerance if chorded else WHOLE):
                     room = False
                     break
                 for k in range(3):
@@ -384,6 +385,7 @@ def line_sampling(
         if a + b == 0.0 or count == 1:
             a, b = one[4], two[4]
         method[index] = LINES
+        radiance[index, 4] = count * faces.made[0] + (local.strips.made[0] * size / square.size) ** 2
         for k in range(3):
             radiance[index, k] = (a * one[k] / one[4] + b * two[k] / max(two[4], 1.0)) / (a + b)
     keep(owned)

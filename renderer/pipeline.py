@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 import schema
 from renderer import CACHE, body, film, relief, shading
-from renderer.area import area_sampling, in_blocks
+from renderer.area import STRIPS, area_sampling, in_blocks
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import csg
 from renderer.errors import Cancelled, Fault, RenderError
@@ -32,9 +32,10 @@ from renderer.tables import BARE, BASE, Floats, Pattern
 from renderer.trace import Truth
 
 TILE = 64  # pixels
+FEW_STRIPS = 128  # `auto` samples where more are near: then that is faster
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
-AOVS = ("method",)
+AOVS = ("method", "error", "cost")
 
 _READY = CACHE / "ready"  # written once all kernels have been compiled
 
@@ -44,7 +45,9 @@ class Picture:
     """What a render gives."""
 
     radiance: NDArray[np.float32]  # (H, W, 3) linear
-    aovs: dict[str, NDArray[np.uint8]]  # method: (H, W) indices of tables.METHODS
+    # (H, W) method: indices of tables.METHODS; error: predicted, relative to a white surface in the same light, 0 where
+    # nothing is known; cost: steps taken, of which a processor does about a hundred million a second
+    aovs: dict[str, film.Aov]
     # By stage, those of threads added up. By the clock: kernels (loading them), compile, solids (making what the method
     # traces in place of the patterns), total.
     seconds: dict[str, float]
@@ -58,9 +61,9 @@ class Settings(NamedTuple):
 
     method: str
     samples: int
-    points: int  # samples of what the method leaves to csg
     seed: int
     texels: int
+    tolerance: float
 
 
 @dataclass
@@ -75,6 +78,8 @@ class Frame:
     albedo: Floats
     radiance: NDArray[np.float32]
     method: NDArray[np.uint8]
+    error: NDArray[np.float32]
+    cost: NDArray[np.float32]
     seconds: dict[str, float] = field(default_factory=dict)
 
     def tile(self, tile: Tile) -> dict[str, float]:
@@ -82,7 +87,7 @@ class Frame:
         scene, settings = self.scene, self.settings
         clock = time.perf_counter
         begin = clock()
-        image = np.empty((tile.width * tile.height, 3))
+        image = np.zeros((tile.width * tile.height, 5))
         methods = np.empty(tile.width * tile.height, np.uint8)
         if isinstance(self.model, Truth):
             self.model.render(
@@ -93,7 +98,7 @@ class Frame:
             return {"geometry": clock() - begin}
         seen = footprints(self.caster, scene.camera, scene.lighting.lights, tile, self.flat, settings.seed)
         cast = clock()
-        radiance = np.zeros((len(seen.footprints), 3))
+        radiance = np.zeros((len(seen.footprints), 5))  # RGB, predicted error, cost
         method = np.full(len(seen.footprints), BASE, np.uint8)
         of = seen.frames["object"][seen.footprints["frame"]]
         grooved = seen.frames["grooved"][seen.footprints["frame"]] != 0
@@ -114,7 +119,9 @@ class Frame:
 
     def _put(self, tile: Tile, image: Floats, methods: NDArray[np.uint8]) -> None:
         rows, columns = slice(tile.y, tile.y + tile.height), slice(tile.x, tile.x + tile.width)
-        self.radiance[rows, columns] = image.reshape(tile.height, tile.width, 3)
+        picture = image.reshape(tile.height, tile.width, 5)
+        self.radiance[rows, columns] = picture[..., :3]
+        self.error[rows, columns], self.cost[rows, columns] = picture[..., 3], picture[..., 4]
         self.method[rows, columns] = methods.reshape(tile.height, tile.width)
 
     def _shade(
@@ -132,25 +139,33 @@ class Frame:
 
         start = time.perf_counter()
         if settings.method == "csg" and pattern is not BARE:
-            csg(settings.samples, False, settings.seed, pattern, seen.footprints, chosen, *rest)
+            csg(settings.samples, 0.0, settings.seed, pattern, seen.footprints, chosen, *rest)
             return timed("csg", start)
         if isinstance(self.model, Textures) and pattern is not BARE:
             relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
             return timed("relief", start)
         if settings.method in ("lines", "area") and pattern is not BARE:
-            flat, ordered = int(row) in self.flat, in_blocks(seen.footprints, chosen)
-            if settings.method == "lines":
-                line_sampling(settings.samples, settings.seed, flat, pattern, seen.footprints, ordered, *rest)
-            else:
-                area_sampling(flat, pattern, seen.footprints, ordered, *rest)
-            timed(settings.method, start)
+            left = chosen
         else:
             line(MODES.get(settings.method, LOOSE), pattern, seen.footprints, chosen, *rest)
             timed("line", start)
-        left = chosen[method[chosen] == NOT_MINE]
+            left = chosen[method[chosen] == NOT_MINE]
+        if len(left) and settings.method in ("lines", "area", "auto"):
+            start = time.perf_counter()
+            most = FEW_STRIPS if settings.method == "auto" else STRIPS
+            flat, ordered = int(row) in self.flat, in_blocks(seen.footprints, left)
+            if settings.method == "lines":
+                line_sampling(
+                    settings.samples, settings.seed, settings.tolerance, most, flat, pattern, seen.footprints, ordered,
+                    *rest,
+                )  # fmt: skip
+            else:
+                area_sampling(settings.tolerance, most, flat, pattern, seen.footprints, ordered, *rest)
+            timed("lines" if settings.method == "lines" else "area", start)
+            left = left[method[left] == NOT_MINE]
         if len(left):
             start = time.perf_counter()
-            csg(settings.points, True, settings.seed, pattern, seen.footprints, left, *rest)
+            csg(settings.samples, settings.tolerance, settings.seed, pattern, seen.footprints, left, *rest)
             timed("csg", start)
         return None
 
@@ -161,6 +176,7 @@ def render(
     method: str | None = None,
     samples: int | None = None,
     texels: int | None = None,
+    tolerance: float | None = None,
     threads: int | None = None,
     resolution: tuple[int, int] | None = None,
     progress: Callable[[float], None] | None = None,
@@ -181,9 +197,9 @@ def render(
     settings = Settings(
         method,
         samples or scene.render.samples_of(method),
-        scene.render.samples if method == "lines" else samples or scene.render.samples,
         scene.render.seed,
         texels or scene.render.texels,
+        tolerance or scene.render.tolerance,
     )
     if settings.method not in METHODS:
         raise RenderError(Fault("/render/method", f"one of {', '.join(METHODS)}", repr(settings.method)))
@@ -219,7 +235,7 @@ def render(
     seconds["total"] = time.perf_counter() - begin
     return Picture(
         radiance=frame.radiance,
-        aovs={"method": frame.method},
+        aovs={"method": frame.method, "error": frame.error, "cost": frame.cost},
         seconds=seconds,
         pattern_bytes=sum(table_bytes(pattern) for pattern in compiled.patterns),
         shares=film.shares(frame.method),
@@ -246,6 +262,8 @@ def _frame(compiled: CompiledScene, settings: Settings, model: Truth | Textures 
         albedo=_albedo() if lit else np.zeros((2, 2, 2)),
         radiance=np.zeros((height, width, 3), np.float32),
         method=np.zeros((height, width), np.uint8),
+        error=np.zeros((height, width), np.float32),
+        cost=np.zeros((height, width), np.float32),
     )
 
 
@@ -372,4 +390,4 @@ def _try(method: str, shape: dict[str, object]) -> None:
         model = _truth(compiled)
     elif method == "relief":
         model = _textures(compiled, 16, 1, None)
-    _frame(compiled, Settings(method, 1, 1, 0, 16), model).tile(Tile(0, 0, 2, 2))
+    _frame(compiled, Settings(method, 1, 0, 16, 0.01), model).tile(Tile(0, 0, 2, 2))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.kernel import kernel, leaf
-from renderer.tables import DIRECTIONAL
+from renderer.tables import DIRECTIONAL, Lighting
 
 Vector = tuple[float, float, float]
 
@@ -122,6 +122,20 @@ def lit_by(light: np.void, material: np.void, n: Vector, e: Vector, at: Vector) 
         return 0.0, 0.0, 0.0
     r = reflect(material, n, e, unit(d))
     return r[0] * light.color[0] / square, r[1] * light.color[1] / square, r[2] * light.color[2] / square
+
+
+@leaf
+def white(lighting: Lighting, at: Vector) -> float:
+    """Radiance of a white matt surface at a world point, turned to each light, under the sky: what errors are measured
+    by. The mean of the channels."""
+    total = lighting.sky[0] + lighting.sky[1] + lighting.sky[2]
+    for light in lighting.lights:
+        part = (light.color[0] + light.color[1] + light.color[2]) / math.pi
+        if light.kind != DIRECTIONAL:
+            d = (light.vector[0] - at[0], light.vector[1] - at[1], light.vector[2] - at[2])
+            part /= max(dot(d, d), 1e-300)
+        total += part
+    return total / 3.0
 
 
 @leaf

@@ -93,7 +93,8 @@ class Render(Model):
         default=256,
         ge=1,
         le=65_536,
-        description="Stratified samples a pixel where a method samples. Default: 256; 2 of method lines.",
+        description="Stratified samples a pixel of a method that samples; auto takes what its tolerance asks for. "
+        "Default: 256; 2 of method lines.",
     )
     texels: int = Field(
         default=1024,
@@ -104,7 +105,11 @@ class Render(Model):
     )
     bounces: int = Field(default=0, ge=0, le=16, description="How often light is followed on. Default: 0.")
     tolerance: float = Field(
-        default=0.002, ge=1e-5, le=1, description="The error of a pixel that auto aims at, radiance. Default: 0.002."
+        default=0.002,
+        ge=1e-5,
+        le=1,
+        description="The error that auto keeps within, of a pixel's radiance (mean of the channels), relative to a "
+        "white matt surface turned to each light of the scene. Default: 0.002.",
     )
     exposure: float = Field(
         default=1.0, ge=1e-6, le=1e6, description="Factor on the radiance in PNG files, a pure number. Default: 1."

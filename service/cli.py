@@ -28,7 +28,7 @@ T = TypeVar("T")
 WRONG, UNREADABLE, STOPPED = 1, 2, 130  # exit codes; 0: all is well
 SCENE_LIMIT = 64 << 20  # bytes of a scene file
 MESH_LIMIT = 1 << 30  # bytes of a mesh file
-AOVS = ("method",)
+AOVS = ("method", "error", "cost")
 SOLIDS, MAP_FILES = (".glb", ".stl", ".ply", ".obj"), (".png", ".exr")
 MAPS = ("height", "normal", "anisotropy")
 
@@ -91,7 +91,7 @@ def render(
             )
         files = [(out, film.encode(picture.radiance, out.suffix.lower(), checked.render.exposure))]
         for name, path in wanted:
-            files.append((path, film.encode_aov(picture.aovs[name], path.suffix.lower())))
+            files.append((path, film.encode_aov(name, picture.aovs[name], path.suffix.lower())))
         return picture, files
 
     picture, files = _finish(work)

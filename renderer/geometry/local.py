@@ -20,7 +20,7 @@ from renderer.kernel import fixed, leaf
 from renderer.tables import FOOTPRINT, Camera, Floats, Pattern
 
 CAPACITY = fixed(512)  # pieces near a domain
-CHORD = 0.008  # how far chords leave arcs, in widths of the footprint
+CHORD = 4.0  # how far chords leave arcs, in widths of the footprint and tolerances; the error is about a fifth of it
 BLOCKS = (8, 2, 0)  # the faces are made for squares of so many pixels, aligned on the screen; 0: for the footprint
 FEW = (16, 48, 512)  # while no more pieces than this are near
 
@@ -51,10 +51,10 @@ HELD, MADE, FULL = 0, 1, 2
 @leaf
 def surround(
     pattern: Pattern, frame: np.void, footprint: np.void, flat: bool, camera: Camera, lights: NDArray[np.void],
-    local: Local,
+    tolerance: float, most: int, local: Local,
 ) -> tuple[int, View]:  # fmt: skip
-    """See to it that the faces hold all that a footprint needs: HELD as they were, MADE anew, or FULL, where that is
-    too much. The view is that of the square which they are made for.
+    """See to it that the faces hold all that a footprint needs: HELD as they were, MADE anew, or FULL, where that takes
+    more than `most` strips, or is more than there is room for. The view is that of the square which they are made for.
 
     flat: its frame is that of all footprints.
     """
@@ -84,7 +84,8 @@ def surround(
                 at[j, 0] = math.inf
         aim(frame, view, lights, local.domain)
         size = thinnest(view, 1.0 / max(side, 1))
-        if spread(pattern, frame, view, lights, local.domain, local.slab) and make(pattern, size, FEW[k], local):
+        finite = spread(pattern, frame, view, lights, local.domain, local.slab)
+        if finite and make(pattern, size, FEW[k], tolerance, most, local):
             at[k, 2] = 1.0
             return MADE, view
     return FULL, view
@@ -116,9 +117,9 @@ def thinnest(view: View, part: float) -> float:
 
 
 @leaf
-def make(pattern: Pattern, size: float, few: int, local: Local) -> bool:
+def make(pattern: Pattern, size: float, few: int, tolerance: float, most: int, local: Local) -> bool:
     """Make the faces of what a square needs, `slab`, for footprints of this size, pattern units. False where more than
-    `few` pieces are near, or there is no room."""
+    `few` pieces or `most` strips are near, or there is no room."""
     domain, slab, found, strips, faces = local.domain, local.slab, local.found, local.strips, local.faces
     m = pattern.reach
     stepped = pattern.height > 0.0
@@ -135,8 +136,10 @@ def make(pattern: Pattern, size: float, few: int, local: Local) -> bool:
     for i in range(max(count, 0)):
         if not room:
             break
-        chunks = divide(pattern, found.piece[i], found.shift[i, 0], found.shift[i, 1], rim, CHORD * size, strips.chunks)
+        x, y = found.shift[i, 0], found.shift[i, 1]
+        chunks = divide(pattern, found.piece[i], x, y, rim, CHORD * tolerance * size, strips.chunks)
         room = room and chunks >= 0
         for j in range(chunks):
+            room = room and strips.made[0] <= most
             room = room and lay(pattern, found.piece[i], i, strips.chunks[j], domain, stepped, strips)
     return room and envelope(strips, domain, pattern.height + pattern.depth, faces)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.faces import FACES, Faces
-from renderer.geometry.local import FULL, HELD, Local, surround
+from renderer.geometry.local import FULL, MADE, Local, surround
 from renderer.geometry.polygon import CORNERS, Counts
 from renderer.geometry.query import Nearby
 from renderer.geometry.solid import Meeting, normal_of
@@ -62,14 +62,16 @@ def seen_of(lights: int) -> Seen:
 @leaf
 def see(
     pattern: Pattern, frame: np.void, footprint: np.void, flat: bool, camera: Camera, lights: NDArray[np.void],
-    local: Local, seen: Seen,
-) -> bool:  # fmt: skip
-    """Make ready the faces that a footprint needs, and how they are seen. False where that is too much.
+    tolerance: float, most: int, local: Local, seen: Seen,
+) -> int:  # fmt: skip
+    """Make ready the faces that a footprint needs, and how they are seen: HELD, MADE or FULL, as `surround`.
 
     flat: its frame is that of all footprints.
     """
-    held, view = surround(pattern, frame, footprint, flat, camera, lights, local)
-    return held == HELD or (held != FULL and look(frame, view, local.square[0], lights, local.faces, seen))
+    held, view = surround(pattern, frame, footprint, flat, camera, lights, tolerance, most, local)
+    if held == MADE and not look(frame, view, local.square[0], lights, local.faces, seen):
+        return FULL
+    return held
 
 
 @leaf

@@ -56,9 +56,9 @@ def test_npy() -> None:
 
 
 def test_aov(tmp_path: Path) -> None:
-    assert (np.load(io.BytesIO(film.encode_aov(METHOD, ".npy"))) == METHOD).all()
-    assert (exr(film.encode_aov(METHOD, ".exr"), tmp_path)["method"] == METHOD).all()
-    colours = np.asarray(Image.open(io.BytesIO(film.encode_aov(METHOD, ".png"))))
+    assert (np.load(io.BytesIO(film.encode_aov("method", METHOD, ".npy"))) == METHOD).all()
+    assert (exr(film.encode_aov("method", METHOD, ".exr"), tmp_path)["method"] == METHOD).all()
+    colours = np.asarray(Image.open(io.BytesIO(film.encode_aov("method", METHOD, ".png"))))
     assert len(film.COLOURS) == len(METHODS) == len(np.unique(film.COLOURS, axis=0))
     assert (colours == film.COLOURS[METHOD]).all()
 
@@ -67,7 +67,7 @@ def test_other_suffixes_are_refused() -> None:
     with pytest.raises(ValueError, match="expected one of"):
         film.encode(PICTURE, ".jpg")
     with pytest.raises(ValueError, match="expected one of"):
-        film.encode_aov(METHOD, ".jpg")
+        film.encode_aov("method", METHOD, ".jpg")
 
 
 def test_shares() -> None:

@@ -24,6 +24,7 @@ import pytest
 from numpy.typing import NDArray
 
 from renderer import mesh, pipeline
+from renderer.film import Aov
 
 Json = dict[str, Any]
 Floats = NDArray[np.float64]
@@ -232,7 +233,7 @@ def placed(plate: Callable[..., Json], grooves: list[Json], parts: Json) -> Json
     return scene
 
 
-def inside(method: NDArray[np.uint8]) -> NDArray[np.bool_]:
+def inside(method: Aov) -> NDArray[np.bool_]:
     """The pixels that see nothing but the plate, with their neighbours: at its edge csg samples parts of pixels."""
     seen = np.pad(method != 0, 1)
     height, width = method.shape
