@@ -47,6 +47,7 @@ PARTS = 512  # polygons that are left of one face
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 1e-6  # the shares of a footprint sum to one within this, or it is left to another method
 CHORDED = 2.0  # ... tolerances, where chords stand for arcs and steps for scales: shares are then divided by their sum
+SMALL = 0.02  # a part of a footprint as small as this has one colour
 BENT = 0.5  # the error where chords stand for arcs, in tolerances
 
 
@@ -229,23 +230,21 @@ def area_sampling(
                         tint = seen.tint[f, source]
                         red, green, blue = red + total * tint[0], green + total * tint[1], blue + total * tint[2]
                         continue
-                    # triangle by triangle, the large ones at three places
-                    for j in range(1, corners - 1):
-                        ax, ay = part[j, 0] - part[0, 0], part[j, 1] - part[0, 1]
-                        bx, by = part[j + 1, 0] - part[0, 0], part[j + 1, 1] - part[0, 1]
-                        piece = 0.5 * (ax * by - ay * bx)
-                        places = 3 if piece > 0.05 else 1
-                        for k in range(places):
-                            u = v = 1.0 / 3.0
-                            if places == 3:
-                                u, v = (2.0 / 3.0 if k == 1 else 1.0 / 6.0), (2.0 / 3.0 if k == 2 else 1.0 / 6.0)
-                            x = footprint.x + footprint.size * (part[0, 0] + u * ax + v * bx)
-                            y = footprint.y + footprint.size * (part[0, 1] + u * ay + v * by)
-                            r, g, b = colour_at(
-                                f, light, x, y, pattern, frame, lighting, material, albedo, bent, found, faces, seen
-                            )
-                            share = piece / places
-                            red, green, blue = red + share * r, green + share * g, blue + share * b
+                    # small ones in their middle, others triangle by triangle about it
+                    mx = my = 0.0
+                    for j in range(corners):
+                        mx, my = mx + part[j, 0] / corners, my + part[j, 1] / corners
+                    for j in range(corners if total > SMALL else 1):
+                        x, y, share = mx, my, total
+                        if total > SMALL:
+                            i1 = j + 1 if j + 1 < corners else 0
+                            ax, ay, bx, by = part[j, 0] - mx, part[j, 1] - my, part[i1, 0] - mx, part[i1, 1] - my
+                            x, y, share = mx + (ax + bx) / 3.0, my + (ay + by) / 3.0, 0.5 * (ax * by - ay * bx)
+                        x, y = footprint.x + footprint.size * x, footprint.y + footprint.size * y
+                        r, g, b = colour_at(
+                            f, light, x, y, pattern, frame, lighting, material, albedo, bent, found, faces, seen
+                        )
+                        red, green, blue = red + share * r, green + share * g, blue + share * b
             if not room:
                 break
         if not room or not abs(whole - 1.0) <= (CHORDED * tolerance if chorded else WHOLE):

@@ -69,7 +69,7 @@ def bounded(values: Floats, suns: int) -> bool:
     grooves=st.lists(GROOVES, min_size=1, max_size=3), twice=st.booleans(), lights=st.lists(LIGHTS, max_size=2),
     origin=ORIGINS, material=MATERIALS, other=MATERIALS, scale=MAPPINGS, tile=TILES,
     shape=st.sampled_from(["rectangle", "sphere", "cylinder"]),
-    method=st.sampled_from(["auto", "line", "segment", "csg", "base"]),
+    method=st.sampled_from(["auto", "line", "segment", "area", "csg", "base"]),
 )  # fmt: skip
 def test_odd_scenes_are_pictures(
     radiance: Radiance, plate: Plate, grooves: list[Json], twice: bool, lights: list[Json], origin: list[float],
@@ -88,7 +88,7 @@ def test_odd_scenes_are_pictures(
 @settings(max_examples=40, deadline=None, derandomize=True, print_blob=True)
 @given(
     grooves=st.lists(GROOVES, min_size=1, max_size=3), suns=st.lists(SUNS, max_size=3), origin=ORIGINS,
-    scale=MAPPINGS, tile=TILES, method=st.sampled_from(["auto", "line", "segment", "csg", "base"]),
+    scale=MAPPINGS, tile=TILES, method=st.sampled_from(["auto", "line", "segment", "area", "csg", "base"]),
 )  # fmt: skip
 def test_no_more_light_than_there_is(
     radiance: Radiance, plate: Plate, grooves: list[Json], suns: list[Json], origin: list[float], scale: list[float],

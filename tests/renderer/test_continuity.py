@@ -58,7 +58,7 @@ def closing_in(picture: Callable[[float], Floats], low: float, high: float, step
     return np.array(found), step
 
 
-@pytest.mark.parametrize("method", ["line", "auto"])
+@pytest.mark.parametrize("method", ["line", "area", "auto"])
 @pytest.mark.parametrize("name", PROFILES)
 @pytest.mark.parametrize("reach", [0.4, 3.0])
 def test_a_groove_slides(name: str, method: str, reach: float, plate: Plate, check: Callable[..., object]) -> None:

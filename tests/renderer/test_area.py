@@ -1,0 +1,112 @@
+"""`area`: shares that sum to one, and pictures that agree with sampling wherever the latter has come to its mean.
+
+The mean of n stratified samples of radiances up to M is off by less than M n^-3/4 wherever a few edges cross a
+footprint, and by far less in most: FEW_EDGES allows for a dozen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from renderer import pipeline
+from renderer.tables import AREA, CSG
+
+from .scenes import GROOVES, MIXED, PALETTE, SUNS, Json, family, line
+
+Plate = Callable[..., Json]
+Shot = Callable[..., pipeline.Picture]
+SAMPLES = 1024
+FEW_EDGES = 2.0 * SAMPLES**-0.75
+V = [[-0.1, 0.0], [0.0, -0.1], [0.1, 0.0]]
+
+
+def sun(*direction: float) -> Json:
+    return {"type": "directional", "direction": list(direction), "irradiance": [math.pi, math.pi, math.pi]}
+
+
+def near(scene: Json, picture: Shot, least: float = 0.99, samples: int = SAMPLES) -> NDArray[np.float64]:
+    """The picture of `area`, which agrees with that of `csg` and took at least a part of the pixels itself."""
+    mine, other = picture(scene, method="area"), picture(scene, method="csg", samples=samples)
+    taken, seen = mine.aovs["method"] == AREA, mine.aovs["method"] != 0
+    assert taken.sum() >= least * seen.sum()
+    assert np.isfinite(mine.radiance).all()
+    values = mine.radiance.astype(np.float64)
+    off = np.abs(values - other.radiance)[taken]
+    most = max(float(other.radiance.max()), 1e-3)
+    assert off.max(initial=0.0) < 2.0 * FEW_EDGES * most
+    assert off.mean() < 0.1 * FEW_EDGES * most
+    return values
+
+
+def test_shares_sum_to_one(plate: Plate, picture: Shot) -> None:
+    """Of straight grooves to rounding: the predicted error is what is left."""
+    straight = [groove for groove in MIXED if groove["path"]["type"] == "polyline"]
+    made = picture(plate(straight, materials=PALETTE), method="area")
+    assert (made.aovs["method"][made.aovs["method"] != 0] == AREA).all()
+    assert made.aovs["error"].max() < 1e-6
+
+
+def test_everything_at_once(plate: Plate, picture: Shot) -> None:
+    near(plate(MIXED, materials=PALETTE), picture)
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-9, 1e-6, 1e-3])
+def test_nearly_parallel_crossings(angle: float, plate: Plate, picture: Shot) -> None:
+    """Degrees; at none they coincide."""
+    lean = math.tan(math.radians(angle))
+    near(plate([line([1 - lean, 0], [1 + lean, 2], profile=V), line([1, 0], [1, 2], profile=V)]), picture)
+
+
+def test_far_away_it_is_the_mean(plate: Plate, picture: Shot) -> None:
+    """Some forty facets in a footprint, of two families."""
+    grooves = [family(V, 0.2, 10), line([-1, 0.07], [3, 0.17], profile=V, repeat={"type": "linear", "count": 10,
+                                                                                "step": [0, 0.2]})]  # fmt: skip
+    camera = {"origin": [0.1, -6, 8], "target": [0, 0, 0], "fov": 14, "resolution": [6, 4]}
+    near(plate(grooves, camera=camera), picture, samples=16 * SAMPLES)
+
+
+@pytest.mark.parametrize("low", [1.0, 0.999999, 1.000001])
+def test_light_in_the_plane_of_a_facet(low: float, plate: Plate, picture: Shot) -> None:
+    """A wall at 45 degrees under a light at 45 degrees: neither lit nor in shadow, and nothing else is lost."""
+    near(plate([family(V, 0.41, 5)], lights=[sun(1, 0, -low)]), picture)
+
+
+@pytest.mark.parametrize("low", [1.0, 0.999999, 1.000001])
+def test_facet_seen_edge_on(low: float, plate: Plate, picture: Shot) -> None:
+    camera = {"origin": [20, 0.0, 20.0 * low], "target": [0, 0, 0], "fov": 2, "resolution": [24, 18]}
+    near(plate([family(V, 0.41, 5)], camera=camera), picture)
+
+
+def test_chords_keep_within_the_tolerance(plate: Plate, picture: Shot) -> None:
+    """On a tight arc with a scale that changes along it."""
+    path = {"type": "circle", "center": [1.0, 1.0], "radius": 0.25}
+    wave = {"type": "sine", "amplitude": 0.4, "periods": 3}
+    groove = {"path": path, "profile": {"type": "polyline", "points": V}, "scale": wave}
+    scene = plate([groove], camera={"origin": [0, -0.8, 1.2], "resolution": [24, 18]})
+    fine = near(scene, picture, 0.95)
+    coarse = picture(scene, method="area", tolerance=0.01)
+    assert np.abs(coarse.radiance - fine).max() < 0.01 * fine.max()
+
+
+def test_what_overhangs_is_sampled(plate: Plate, picture: Shot) -> None:
+    dovetail = [[-0.05, 0.0], [-0.1, -0.1], [0.1, -0.1], [0.05, 0.0]]
+    made = picture(plate([line([1, -1], [1, 3], profile=dovetail)]), method="area")
+    assert (made.aovs["method"] == CSG).any()
+    assert (made.aovs["method"] == AREA).any()
+
+
+@settings(max_examples=15, deadline=None, derandomize=True, print_blob=True)
+@given(grooves=st.lists(GROOVES, min_size=1, max_size=3), suns=st.lists(SUNS, min_size=1, max_size=2))
+def test_any_grooves(grooves: list[Json], suns: list[Json], plate: Plate, picture: Shot) -> None:
+    single: list[dict[str, Any]] = [{k: v for k, v in groove.items() if k != "repeat"} for groove in grooves]
+    scene = plate(single, lights=suns, camera={"resolution": [12, 9]})
+    scene["materials"] |= {"other": {"base_color": [0.3, 0.6, 0.9], "specular": 0}}
+    near(scene, picture, 0.0)
