@@ -209,7 +209,8 @@ def own_bias(plan: Plan, state: State) -> dict[str, float] | None:
 def _row(row: Row, state: State) -> dict[str, Any]:
     setting = row.setting
     told: dict[str, Any] = {
-        "name": setting.name, "method": setting.method, "samples": setting.samples, "texels": setting.texels
+        "name": setting.name, "method": setting.method, "samples": setting.samples, "texels": setting.texels,
+        "tolerance": setting.tolerance,
     }  # fmt: skip
     record = state.records.get(setting.name)
     if record is None:
