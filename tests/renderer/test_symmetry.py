@@ -81,8 +81,8 @@ def test_mirror_of_parallel_grooves(method: str, profile: list[list[float]], pla
 
 @pytest.mark.parametrize("method", ["area", "auto"])
 def test_mirror_of_anything_exact(method: str, plate: Plate, radiance: Radiance) -> None:
-    """But for what changes within a part of a footprint (gloss, lamps): it is taken in middles of parts, and which parts
-    there are depends on the order of the grooves. So it is off, by 0.002 at most."""
+    """But for what changes within a part of a footprint (gloss, lamps): that is taken in middles of parts, and which
+    parts there are depends on the order of the grooves."""
     scene = plate(FLAT, materials=PALETTE, **LARGE)
     one, other = radiance(scene, method=method), radiance(mirrored(scene), method=method)[:, ::-1]
     off = np.abs(one - other)
