@@ -1,9 +1,10 @@
 """All measurements in one process run: a table on the terminal, bench/results.json, each run in bench/out/raw.json.
 
-    python -m bench [truth] [papers] [speed] [memory] [startup]
+    python -m bench [truth] [papers] [special] [speed] [memory] [startup]
     python -m bench stability
 
-Takes about ten minutes on two cores, nearly all of them for the references of `papers`, which writes docs/PAPERS.md.
+Takes about a quarter of an hour on two cores, nearly all for the references of `papers`, which writes docs/PAPERS.md,
+and of `special`, which keeps its own in bench/out.
 `stability` takes as long, is measured only where it is named, and writes docs/STABILITY.md's maps and tables.
 """
 
@@ -15,6 +16,7 @@ from pathlib import Path
 
 from bench import memory, papers, speed, startup, truth
 from bench.report import Line, table
+from bench.special import measure as special
 from bench.stability import page
 from renderer import pipeline
 from service.chart.machine import machine
@@ -25,6 +27,7 @@ OUT = ROOT / "bench" / "out"
 PARTS = {
     "truth": truth.measure,
     "papers": papers.measure,
+    "special": special.measure,
     "speed": speed.measure,
     "memory": memory.measure,
     "startup": startup.measure,

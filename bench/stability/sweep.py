@@ -4,6 +4,9 @@ Errors are shares of the radiance of a white surface that faces the light. Again
 seeds, the square of a method's error is estimated by the mean of (X - A)(X - B), in which their noise has no part but
 by chance: what is less than that chance is called below the noise. `csg` and `geometry` are drawn once more with the
 very samples of the truth in double precision, which leaves their own mistakes and no noise at all.
+
+The pixels of a case are all alike and full of the plate. So one that sees no object is a hole, and one whose radiance
+lies beyond the range of the truth's, by more than noise and tolerance tell, is a firefly, or too dark.
 """
 
 from __future__ import annotations
@@ -36,6 +39,8 @@ TRUTH = 4096  # of a truth
 MESHED, MESHED_CURVES = 150, 40  # grooves and crossings; more are not meshed here, as that takes long
 WAVES, MORE_WAVES = 20.0, 200.0  # likewise, of perturbed grooves, in pairs and alone: see `waves`
 FEW_PIXELS = (3, 3)  # where there are very many grooves
+TOLERANCE = 0.002  # of the render settings
+NEAR = 0.5 * TOLERANCE  # by which a pixel may lie beyond the truth's range and noise: what is approximated
 ARC = 1e-4  # groove widths by which a mesh's chords may leave their arcs
 
 
@@ -75,6 +80,7 @@ class Score(NamedTuple):
     rms: float  # over the pixels, the truth's noise taken out
     worst: float  # the largest pixel
     bias: float  # the mean, signed
+    beyond: float = 0.0  # how far the farthest pixel lies beyond the truth's range and noise; negative: darker
     failed: str = ""  # an exception, or what is no radiance at all
 
 
@@ -130,12 +136,20 @@ def fine_meshes() -> Iterator[None]:
 
 def picture(made: Setting, pixels: tuple[int, int], method: str, samples: int, seed: int) -> Floats:
     """The radiance (H, W) of a method."""
+    return rendered(made, pixels, method, samples, seed).radiance[:, :, 0].astype(np.float64)
+
+
+def rendered(made: Setting, pixels: tuple[int, int], method: str, samples: int, seed: int) -> pipeline.Picture:
+    """What a method makes of it; ValueError where there are holes."""
     report = schema.check(made.scene | {"render": {"seed": seed}})
     assert report.scene is not None, [problem.line() for problem in report.problems]
     found = pipeline.render(
         report.scene, method=method, samples=samples, threads=1, resolution=pixels, patterns=_cache()
     )
-    return found.radiance[:, :, 0].astype(np.float64)
+    holes = np.count_nonzero(found.aovs["method"] == 0)
+    if holes and method != "geometry":
+        raise ValueError(f"{holes} holes")
+    return found
 
 
 @functools.cache
@@ -143,15 +157,37 @@ def _cache() -> PatternCache:
     return PatternCache()
 
 
-def score(image: Floats, one: Floats, two: Floats) -> Score:
-    """A picture against two truths that differ by noise."""
+def score(image: Floats, one: Floats, two: Floats, own: float = 0.0) -> Score:
+    """A picture against two truths that differ by noise. own: by how much a pixel may lie off by its own noise."""
     if not np.isfinite(image).all():
-        return Score(math.nan, math.nan, math.nan, f"{np.count_nonzero(~np.isfinite(image))} pixels are not finite")
+        return Score(
+            math.nan, math.nan, math.nan, failed=f"{np.count_nonzero(~np.isfinite(image))} pixels are not finite"
+        )
     if (image < 0.0).any():
-        return Score(math.nan, math.nan, math.nan, f"a radiance of {image.min():.2g}")
+        return Score(math.nan, math.nan, math.nan, failed=f"a radiance of {image.min():.2g}")
     mean = 0.5 * (one + two)
     rms = math.sqrt(max(float(np.mean((image - one) * (image - two))), 0.0))
-    return Score(rms, float(np.abs(image - mean).max()), float((image - mean).mean()))
+    return Score(rms, float(np.abs(image - mean).max()), float((image - mean).mean()), beyond(image, one, two, own))
+
+
+def beyond(image: Floats, one: Floats, two: Floats, own: float = 0.0) -> float:
+    """By how much the farthest pixel lies beyond the truths' range and four deviations of their noise, and its own."""
+    noise = own + 4.0 * math.sqrt(float(np.mean((one - two) ** 2)) / 2.0)
+    above = float(image.max() - max(one.max(), two.max())) - noise
+    below = float(min(one.min(), two.min()) - image.min()) - noise
+    return max(above, 0.0) if above >= below else -max(below, 0.0)
+
+
+def outlies(one: Score) -> bool:
+    """Whether there is a pixel that noise does not explain."""
+    return abs(one.beyond) > NEAR
+
+
+def own_noise(method: str, found: pipeline.Picture) -> float:
+    """Four deviations of a pixel: as predicted, or of SAMPLES samples of values from 0 to 1 at the most."""
+    if method in ("csg", "relief"):
+        return 2.0 / math.sqrt(SAMPLES)
+    return 2.0 * float(found.aovs["error"].max()) if "error" in found.aovs else 0.0
 
 
 def floor_of(one: Floats, two: Floats) -> float:
@@ -204,11 +240,12 @@ def run(case: Case, most_waves: float = WAVES, samples: int = SAMPLES, truth_sam
             method = name.split(",")[0]
             try:
                 if name in METHODS:
-                    scores[name] = score(picture(made, pixels, method, samples, 0), one, two)
+                    found = rendered(made, pixels, method, samples, 0)
+                    scores[name] = score(found.radiance[:, :, 0].astype(float), one, two, own_noise(method, found))
                 elif same is not None and (method == "csg" or (meshed and made.families)):
                     scores[name] = score(picture(made, pixels, method, samples, 0), same, same)
             except Exception as error:
-                scores[name] = Score(math.nan, math.nan, math.nan, f"{type(error).__name__}: {error}")
+                scores[name] = Score(math.nan, math.nan, math.nan, failed=f"{type(error).__name__}: {error}")
     return done(kind, floor_of(one, two))
 
 

@@ -15,7 +15,7 @@ import pytest
 
 from bench.stability import exact
 from bench.stability.scenes import PIXELS, Case, setting
-from bench.stability.sweep import METHODS, Score, of, picture, run
+from bench.stability.sweep import ITSELF, METHODS, Score, of, outlies, picture, run
 
 SAMPLES = 256
 FLIPS = 2
@@ -75,11 +75,15 @@ def test_csg_is_exact_but_for_rounding(values: dict[str, float]) -> None:
 
 @pytest.mark.parametrize("values", STRAIGHT + OTHERS, ids=name)
 def test_no_method_breaks(values: dict[str, float]) -> None:
-    """Finite and not negative, and `auto` as right as its tolerance, the truth's noise and its own samples allow."""
+    """Finite and not negative, no holes, no fireflies; `auto` as right as its tolerance, the truth's noise and its own
+    samples allow."""
     result = run(of(values), most_waves=20.0, samples=SAMPLES, truth_samples=1024)
     assert not math.isnan(result.floor), result.truth
     assert {method: score.failed for method, score in result.scores.items() if score.failed} == {}
     assert set(METHODS) <= set(result.scores)
+    for method in ("auto", "area", "csg", ITSELF[0]):
+        if method in result.scores:
+            assert not outlies(result.scores[method]), method
 
     def allowed(other: Score) -> float:
         return 1.5 * other.rms + result.floor + 0.5 * TOLERANCE

@@ -103,7 +103,7 @@ def _carried(made: body.Body) -> Floats:
     return np.asarray(carried / np.maximum(length, 1e-300))
 
 
-def foreign_scene(mi: Any, scene: schema.Scene) -> Any:
+def foreign_scene(mi: Any, scene: schema.Scene, sampler: str = "independent") -> Any:
     camera = scene.camera
     width, height = camera.resolution
     content: dict[str, Any] = {
@@ -116,7 +116,7 @@ def foreign_scene(mi: Any, scene: schema.Scene) -> Any:
             ),
             "film": {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb",
                      "component_format": "float32", "rfilter": {"type": "box"}},
-            "sampler": {"type": "independent"},
+            "sampler": {"type": sampler},
         },
     }  # fmt: skip
     for index, light in enumerate(scene.lights):

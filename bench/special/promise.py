@@ -1,0 +1,131 @@
+"""What `auto` promises: at least 95 % of the pixels within the tolerance, no slower than the slowest that keeps it.
+
+An error is the difference of radiance, the mean of its channels, over what a white matt surface turned to each light
+sends there (`shading.white`). The reference is `csg` in passes; its noise is in what is counted, so that the shares are
+of no more than its own noise too low. Single methods: `line`, `area`, and `csg` with the first number of samples that
+keeps the tolerance.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import schema
+from bench.report import Line, at_least, at_most
+from bench.scenes import EXAMPLES, Floats, load
+from bench.special.reference import reference
+from renderer import pipeline
+from renderer.compile import PatternCache, compile_scene
+from renderer.footprint import rays
+from renderer.raycast import Caster
+from renderer.tables import DIRECTIONAL
+from service.chart.record import APART
+from service.chart.settings import MINE, Setting
+
+NAMES = ("parallel", "tiles", "single", "vinyl", "hieroglyphs", "brushed", "scratches")
+TOLERANCES = (0.01, 0.003, 0.001)
+SHARE = 0.95
+SIZE = (32, 24)
+SAMPLES, PASSES = 4096, (2, 2)
+LADDER = (16, 64, 256, 1024)  # samples of csg
+RUNS = 3
+
+
+class Drawn(NamedTuple):
+    """A picture's errors at the pixels that see an object, and its seconds."""
+
+    off: Floats
+    seconds: float
+
+
+def measure() -> tuple[list[Line], dict[str, Any]]:
+    """Every example at every tolerance."""
+    lines: list[Line] = []
+    detail: dict[str, Any] = {}
+    for name in NAMES:
+        print(f"  auto: {name} ...", flush=True)
+        found, detail[name] = _example(load(name))
+        lines += [line._replace(what=f"auto, {name} {line.what}") for line in found]
+    return lines, detail
+
+
+def _example(scene: schema.Scene) -> tuple[list[Line], dict[str, Any]]:
+    truth = reference(scene, "csg", SIZE, SAMPLES, PASSES, meshes=_file)
+    patterns = PatternCache()
+    bright = white(scene, patterns)
+    mask = np.isfinite(bright)
+    noise = (np.sqrt(truth.variance / truth.count).mean(axis=2) / bright)[mask]
+
+    def draw(method: str, samples: int | None = None, tolerance: float | None = None, runs: int = RUNS) -> Drawn:
+        told = scene.render.model_copy(update={"tolerance": tolerance} if tolerance else {})
+        seeded = Setting(method, samples).scene(scene.model_copy(update={"render": told}), MINE)
+        seconds = []
+        for _ in range(runs):
+            picture = pipeline.render(
+                seeded, method=method, samples=samples, resolution=SIZE, meshes=_file, patterns=patterns
+            )
+            seconds.append(picture.seconds["total"] - sum(picture.seconds.get(stage, 0.0) for stage in APART))
+        off = np.abs((picture.radiance - truth.mean).mean(axis=2)) / bright
+        return Drawn(off[mask], float(np.median(seconds)))
+
+    sampled = cache(lambda samples: draw("csg", samples, runs=1))
+    lines: list[Line] = []
+    detail: dict[str, Any] = {"noise": _quantiles(noise), "passes": truth.count, "pixels": int(mask.sum())}
+    for tolerance in TOLERANCES:
+
+        def within(drawn: Drawn, tolerance: float = tolerance) -> float:
+            return float(np.mean(drawn.off <= tolerance))
+
+        auto = draw("auto", tolerance=tolerance)
+        rivals = {"line": draw("line"), "area": draw("area", tolerance=tolerance)}
+        for samples in LADDER:
+            rivals[f"csg {samples}"] = sampled(samples)
+            if within(rivals[f"csg {samples}"]) >= SHARE:
+                break
+        keep = {method: drawn.seconds for method, drawn in rivals.items() if within(drawn) >= SHARE}
+        lines.append(at_least(f"at {tolerance:g}: within it", 100.0 * within(auto), 100.0 * SHARE, "%"))
+        lines.append(Line(f"at {tolerance:g}", auto.seconds, "s"))
+        if keep:
+            slowest = max(keep, key=lambda method: keep[method])
+            what = f"at {tolerance:g}: its time over that of {slowest}, the slowest that keeps it"
+            lines.append(at_most(what, auto.seconds / keep[slowest], 1.0))
+        else:
+            lines.append(Line(f"at {tolerance:g}: the methods that keep it, up to {LADDER[-1]} samples", 0))
+        detail[f"{tolerance:g}"] = {
+            "auto": _told(auto, tolerance), "rivals": {name: _told(drawn, tolerance) for name, drawn in rivals.items()},
+            "unresolved": float(np.mean(2.0 * noise > tolerance)),
+        }  # fmt: skip
+    return lines, detail
+
+
+def _told(drawn: Drawn, tolerance: float) -> dict[str, Any]:
+    return {"seconds": drawn.seconds, "within": float(np.mean(drawn.off <= tolerance)), "off": _quantiles(drawn.off)}
+
+
+def _quantiles(values: Floats) -> dict[str, float]:
+    return {f"{share:g}": float(np.quantile(values, share)) for share in (0.5, 0.9, 0.95, 0.99, 1.0)}
+
+
+def white(scene: schema.Scene, patterns: PatternCache) -> Floats:
+    """What a white matt surface turned to each light sends (H, W), at what a pixel's middle sees; NaN: no object."""
+    compiled = compile_scene(scene, SIZE, patterns, _file)
+    caster = Caster(compiled.objects, compiled.triangles)
+    y, x = (at.ravel() + 0.5 for at in np.mgrid[0 : SIZE[1], 0 : SIZE[0]])
+    directions = rays(compiled.camera, x, y)
+    hits = caster.hits(compiled.camera.origin, directions)
+    seen = hits["object"] >= 0
+    points = compiled.camera.origin + np.where(seen, hits["t"], 0.0)[:, None] * directions
+    total = np.full(len(points), float(np.sum(compiled.lighting.sky)))
+    for light in compiled.lighting.lights:
+        part = float(np.sum(light["color"])) / math.pi
+        far = np.sum((light["vector"] - points) ** 2, axis=1)
+        total += part if light["kind"] == DIRECTIONAL else part / np.maximum(far, 1e-300)
+    return np.where(seen, total / 3.0, np.nan).reshape(SIZE[1], SIZE[0])
+
+
+def _file(name: str) -> bytes:
+    return (EXAMPLES / name).read_bytes()
