@@ -87,7 +87,10 @@ def _example(scene: schema.Scene) -> tuple[list[Line], dict[str, Any]]:
             if within(rivals[f"csg {samples}"]) >= SHARE:
                 break
         keep = {method: drawn.seconds for method, drawn in rivals.items() if within(drawn) >= SHARE}
-        lines.append(at_least(f"at {tolerance:g}: within it", 100.0 * within(auto), 100.0 * SHARE, "%"))
+        line = at_least(f"at {tolerance:g}: within it", 100.0 * within(auto), 100.0 * SHARE, "%")
+        if not line.met and float(np.mean(auto.off - 2.0 * noise <= tolerance)) >= SHARE:  # the noise may be all of it
+            line = line._replace(what=f"{line.what}, at least: the reference tells no more", met=None)
+        lines.append(line)
         lines.append(Line(f"at {tolerance:g}", auto.seconds, "s"))
         if keep:
             slowest = max(keep, key=lambda method: keep[method])
