@@ -45,8 +45,8 @@ from renderer.tables import AREA, DIRECTIONAL, Camera, Floats, Lighting, Pattern
 NOT_MINE = 255  # in `method`: left to another method
 PARTS = 512  # polygons that are left of one face
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
-WHOLE = 1e-6  # the shares of a footprint sum to one within this, or it is left to another method
-CHORDED = 2.0  # ... tolerances, where chords stand for arcs and steps for scales: shares are then divided by their sum
+WHOLE = 0.1  # in tolerances: the shares of a footprint sum to one within this, or it is left to another method
+CHORDED = 2.0  # ... where chords stand for arcs and steps for scales; shares are divided by their sum
 SMALL = 0.02  # a part of a footprint as small as this has one colour
 BENT = 0.5  # the error where chords stand for arcs, in tolerances
 
@@ -247,7 +247,7 @@ def area_sampling(
                         red, green, blue = red + share * r, green + share * g, blue + share * b
             if not room:
                 break
-        if not room or not abs(whole - 1.0) <= (CHORDED * tolerance if chorded else WHOLE):
+        if not room or not abs(whole - 1.0) <= tolerance * (CHORDED if chorded else WHOLE):
             continue
         method[index] = AREA
         radiance[index, 3] = abs(whole - 1.0) + (BENT * tolerance if chorded else 0.0)

@@ -1,9 +1,9 @@
 """Method `csg`: rays against the spans of added and removed material (003), n stratified samples a footprint.
 
 Right for every case, however slow. `auto` sends it what no cheaper method takes, with a tolerance. Then a footprint
-whose corners and first few samples all fall on one facet, all lit alike, is left at those: what one straight edge cuts
-off a footprint has one of its corners in it. Any other gets as many as bring the predicted error within the tolerance:
-that of a mean of strata, whose variances the differences of neighbours tell.
+near one or two grooves whose corners and first few samples all fall on one facet, all lit alike, is left at those: what
+one straight edge cuts off a footprint has one of its corners in it. Any other gets as many as bring the predicted error
+within the tolerance: that of a mean of strata, whose variances the differences of neighbours tell.
 """
 
 from __future__ import annotations
@@ -24,8 +24,9 @@ from renderer.tables import CSG, Camera, Lighting, Pattern
 
 SHARED = fixed(32)  # up to so many pieces are found once for all samples of a footprint
 LEVEL = 1e-6  # a light's slope to the plane is taken for at least this
-PROBE = 4  # with a tolerance it begins with the corners and PROBE * PROBE samples,
-FIRST = 8  # then takes FIRST * FIRST,
+FEW = 2  # with a tolerance, and no more pieces near than this, it begins with
+PROBE = 4  # the corners and PROBE * PROBE samples,
+FIRST = 8  # else or then takes FIRST * FIRST,
 MOST = 64  # and at most MOST * MOST
 SURE = 0.5  # how much of the tolerance the standard error may take
 
@@ -85,7 +86,9 @@ def csg(
         corners = 0
         target = 0.0
         if tolerance > 0.0:
-            across, down, corners = PROBE, PROBE, 4
+            across = down = FIRST
+            if 0 <= shared <= FEW:
+                across, down, corners = PROBE, PROBE, 4
             target = SURE * tolerance * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0

@@ -55,8 +55,11 @@ NOT_MINE = 255  # in `method`: left to another method
 
 GAUSS = 0.5 / math.sqrt(3.0)
 STRAIGHT = 0.02
-"""How far, as a part of the footprint's width across the groove, a path may bend away from its tangent, and how much
-its scale may change, before it no longer counts as straight."""
+"""How far, as a part of the footprint's width across the groove, a path may bend away from its tangent, before it no
+longer counts as straight."""
+SLOPED = 0.003
+"""The change of a path's scale, by its width or the footprint's length, from which on facets count as tilted: what they
+reflect is off by about as much."""
 TURNED = 0.02
 """The angle by which a path may turn, radians, between a footprint and what is seen through it or shades that: facets
 there are not turned as they are in the footprint's middle. The pixel's error is about a twentieth of it."""
@@ -335,10 +338,7 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
                 return -1
             if abs(piece.curvature) * (length - r.length) > TURNED:
                 return -1
-            if (
-                steepest(pattern, groove, piece, s, slope, length) * max(length, pattern.depth, piece.half)
-                > STRAIGHT * f
-            ):
+            if steepest(pattern, groove, piece, s, slope, length) * max(length, pattern.depth, piece.half) > SLOPED * f:
                 return -1
         # A curved path runs beside its tangent: in the mean over the footprint so far.
         axis = sign * (0.5 * piece.curvature * r.spread * r.spread - b)
