@@ -138,7 +138,7 @@ def make(pattern: Pattern, size: float, few: int, tolerance: float, most: int, l
             break
         x, y = found.shift[i, 0], found.shift[i, 1]
         chunks = divide(pattern, found.piece[i], x, y, rim, CHORD * tolerance * size, strips.chunks)
-        room = room and chunks >= 0
+        room = chunks >= 0
         for j in range(chunks):
             room = room and strips.made[0] <= most
             room = room and lay(pattern, found.piece[i], i, strips.chunks[j], domain, stepped, strips)
