@@ -23,11 +23,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.folds import SUMS, crowded, family_at, fold, is_alone, runs_straight
 from renderer.geometry.pieces import is_beyond, locate, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find, nearby, over_crossing
+from renderer.geometry.reach import NEAR, STRAIGHT, TURNED, Reach
 from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, shifts, spans
 from renderer.geometry.view import View, on_plane, view_of
-from renderer.kernel import borrow, fixed, keep, kernel, leaf
+from renderer.kernel import borrow, callee, fixed, keep, kernel, leaf
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
 from renderer.tables import (
     BASE,
@@ -45,6 +47,7 @@ from renderer.tables import (
 
 CAPACITY = fixed(2048)  # pieces near a footprint; more are left to sampling
 POINTS = fixed(16384)  # points of one cross-section
+KNOWN = fixed(8)  # shares of a folded footprint that are kept
 
 # How the kernel treats what is not parallel, isolated and straight.
 STRICT = 0  # `auto`: mark it as not its own
@@ -54,29 +57,12 @@ PAPER = 2  # `segment` for the whole image
 NOT_MINE = 255  # in `method`: left to another method
 
 GAUSS = 0.5 / math.sqrt(3.0)
-STRAIGHT = 0.02
-"""How far, as a part of the footprint's width across the groove, a path may bend away from its tangent, before it no
-longer counts as straight."""
 SLOPED = 0.003
 """The change of a path's scale, by its width or the footprint's length, from which on facets count as tilted: what they
 reflect is off by about as much."""
-TURNED = 0.02
-"""The angle by which a path may turn, radians, between a footprint and what is seen through it or shades that: facets
-there are not turned as they are in the footprint's middle. The pixel's error is about a twentieth of it."""
 PARALLEL = 1e-6  # sine of the angle between grooves that count as parallel
 NEARLY_PARALLEL = 0.05  # ... in LOOSE and PAPER
 LEVEL = 1.001  # an eye or a light must stand this much higher than the highest ridge
-
-# A groove near the footprint.
-NEAR = np.dtype(
-    [
-        ("piece", "i8"),
-        ("start", "f8"), ("finish", "f8"),  # where its cross-section begins and ends along B, from the centre
-        ("axis", "f8"),  # where its path lies
-        ("turned", "f8"),  # -1: the path runs against T; else 1
-        ("scale", "f8"),
-    ]
-)  # fmt: skip
 
 
 class Work(NamedTuple):
@@ -95,6 +81,9 @@ class Work(NamedTuple):
     lit_high: Floats
     light: Floats  # (lights, 4) D_b, D_w, h; 1 where it lights anything here
     towards: Floats  # (lights, 2) shift along p and q for a unit of height to each light
+    sums: Floats  # (SUMS, 2) what the grooves laid out stand for, where repeats are folded: shift along B, copies
+    known: Floats  # (KNOWN + 1, 2) shares known of such sums: places along B, shares; then the row to write next
+    rims: Floats  # (6, 2) first and last of the periods of a fold that are summed one by one
     tint: Floats  # (2 facets + 1, lights + 1, 3) radiance of a facet under each light, then under the sky
     tinted: NDArray[np.int64]  # (2 facets + 1,) the footprint for which `tint` holds
 
@@ -106,25 +95,9 @@ def work_for(pattern: Pattern, lights: int) -> Work:
         nearby(pattern, CAPACITY), np.empty(CAPACITY, NEAR), np.empty(POINTS), np.empty(POINTS),
         np.empty(POINTS, np.int64), np.empty(POINTS, np.int64), np.empty(POINTS), np.empty(POINTS), np.empty(POINTS),
         np.empty((lights, POINTS)), np.empty((lights, POINTS)), np.empty((lights, 4)), np.empty((lights, 2)),
+        np.empty((SUMS, 2)), np.zeros((KNOWN + 1, 2)), np.empty((6, 2)),
         np.empty((2 * facets + 1, lights + 1, 3)), np.full(2 * facets + 1, -1, np.int64),
     )  # fmt: skip
-
-
-class Reach(NamedTuple):
-    """The frame of parallel grooves at the footprint's centre, and how far around it matters; pattern units."""
-
-    tx: float  # T; B is (-ty, tx)
-    ty: float
-    eye_t: float  # shift along T and B for a unit of height towards the eye
-    eye_b: float
-    low: float  # the footprint along B
-    high: float
-    length: float  # the farthest it gets from its centre along T, and how far it does on root mean square
-    spread: float
-    wide_low: float  # ... with what is seen through it, or shades that
-    wide_high: float
-    long_low: float  # the same along T
-    long_high: float
 
 
 @leaf
@@ -355,7 +328,7 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
             at -= 1
         g = work.near[at]
         g.piece, g.start, g.finish = found.piece[k], start, finish
-        g.axis, g.turned, g.scale = axis, sign, f
+        g.axis, g.turned, g.scale, g.copies = axis, sign, f, 1.0
         n += 1
     if n > 1:
         last = 0  # grooves that coincide are one
@@ -418,10 +391,10 @@ def lay(pattern: Pattern, r: Reach, first: int, last: int, work: Work) -> int:
 
 @leaf
 def tint_of(
-    index: int, i: int, distant: bool, pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float,
+    index: int, i: int, distant: bool, kept: bool, pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float,
     eye_h: float, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, work: Work,
 ) -> int:  # fmt: skip
-    """The row of `work.tint` with the colours of facet i, found once a footprint where all lights are far.
+    """The row of `work.tint` with the colours of facet i, found once a footprint where they are `kept`.
 
     Where they change along the groove they are the mean of two places, as far apart as the footprint is long on root
     mean square. On curved paths the normal turns on the way to them, and to where the facet is seen through the plane.
@@ -434,7 +407,7 @@ def tint_of(
         slot = pattern.facet_slot[where] + 1
         row = 2 * where + (1 if near.turned > 0.0 else 0)
         turn = near.turned * piece.curvature
-    if distant and work.tinted[row] == index:
+    if kept and work.tinted[row] == index:
         return row
     work.tinted[row] = index
     lights = lighting.lights
@@ -466,12 +439,65 @@ def tint_of(
     return row
 
 
+@callee
+def fold_within(
+    pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], work: Work
+) -> tuple[int, int, Reach]:
+    """Fill `work.near` with what stands for all grooves within reach, where they are many periods of one family.
+
+    How many rows, how many entries of `work.sums`, and the frame; no rows where all is left as it is.
+    """
+    none = Reach(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    which = crowded(pattern, view)
+    if which < 0:
+        return 0, 0, none
+    family = pattern.families[which]
+    tx, ty, _ = family_at(family, view.p, view.q)
+    eye_w = frame.eye[2]
+    eye_p, eye_q = frame.eye[0] - view.p, frame.eye[1] - view.q
+    r = reach_along(False, pattern, view, eye_p / eye_w, eye_q / eye_w, tx, ty, work)
+    if not runs_straight(family, view, r) or not is_alone(pattern, which, view, r, work.found):
+        return 0, 0, none
+    turn_lights(frame, view, -ty, tx, lights, False, work)
+    eye_d = eye_q * tx - eye_p * ty
+    rows, entries = fold(pattern, family, view, r, eye_d, eye_w, work.light, work.near, work.sums, work.rims)
+    return rows, entries, r
+
+
 @leaf
 def weight(paper: bool, view: View, bx: float, by: float, centre: float, half: float, low: float, high: float) -> float:
     """The share of the footprint between two places along B: of its area, or of the papers' segment [-half, half]."""
     if paper:
         return (min(max(high, -half), half) - min(max(low, -half), half)) / (2.0 * half)
     return along(view, bx, by, centre + high) - along(view, bx, by, centre + low)
+
+
+@leaf
+def up_to(view: View, bx: float, by: float, centre: float, y: float, entries: int, work: Work) -> float:
+    """The share of the footprint below y and its copies by `work.sums`. The last few are kept: intervals share ends."""
+    for k in range(KNOWN):
+        if work.known[k, 0] == y:
+            return float(work.known[k, 1])
+    total = 0.0
+    for k in range(entries):
+        total += work.sums[k, 1] * along(view, bx, by, centre + work.sums[k, 0] + y)
+    at = int(work.known[KNOWN, 0])
+    work.known[at, 0], work.known[at, 1] = y, total
+    work.known[KNOWN, 0] = (at + 1) % KNOWN
+    return total
+
+
+@leaf
+def weight_all(
+    folded: bool, entries: int, work: Work, paper: bool, view: View, bx: float, by: float, centre: float, half: float,
+    low: float, high: float,
+) -> float:  # fmt: skip
+    """The same for all that a groove stands for."""
+    if not folded or entries == 1:
+        return weight(paper, view, bx, by, centre, half, low, high)
+    if entries == 0:
+        return float(work.sums[0, 1] * (high - low))
+    return up_to(view, bx, by, centre, high, entries, work) - up_to(view, bx, by, centre, low, entries, work)
 
 
 @kernel
@@ -493,6 +519,9 @@ def line(
     distant = True
     for l in range(len(lights)):
         distant = distant and lights[l].kind == DIRECTIONAL
+    matte = True
+    for slot in slots:
+        matte = matte and materials[slot].metallic == 0.0 and materials[slot].f90 == 0.0
     ridged = pattern.height > 0.0
     most = 0  # points of a cross-section
     for profile in pattern.profiles:
@@ -507,24 +536,32 @@ def line(
         if strict and (not clear or eye_w <= LEVEL * pattern.height):
             continue
         eye_p, eye_q = (frame.eye[0] - view.p) / eye_w, (frame.eye[1] - view.q) / eye_w
-        count = find_around(strict, pattern, view, eye_p, eye_q, work)
-        if count < 0:
-            continue
-        # an eye among the ridges is not for a cross-section: it sees the plane
-        if eye_w <= LEVEL * pattern.height or not near_groove(pattern, count, view, eye_p, eye_q, work):
-            count = 0
-        tx, ty = direction(pattern, work.found, count, view)
-        r = reach_along(paper, pattern, view, eye_p, eye_q, tx, ty, work)
-        if strict and count > 0 and not pattern.parallel:
-            count = find_within(pattern, view, r, work)
+        grooves = entries = 0
+        if not paper and clear and len(pattern.families) > 0 and eye_w > LEVEL * pattern.height:
+            grooves, entries, r = fold_within(pattern, frame, view, lights, work)
+        folded = grooves > 0
+        if entries > 1:
+            work.known[:, 0] = np.inf
+            work.known[KNOWN, 0] = 0.0
+        if not folded:
+            count = find_around(strict, pattern, view, eye_p, eye_q, work)
             if count < 0:
                 continue
-        grooves = pick(strict, pattern, view, r, count, work)
-        if grooves < 0 or (ridged and grooves * (most + 1) + 2 > POINTS):
+            # an eye among the ridges is not for a cross-section: it sees the plane
+            if eye_w <= LEVEL * pattern.height or not near_groove(pattern, count, view, eye_p, eye_q, work):
+                count = 0
+            tx, ty = direction(pattern, work.found, count, view)
+            r = reach_along(paper, pattern, view, eye_p, eye_q, tx, ty, work)
+            if strict and count > 0 and not pattern.parallel:
+                count = find_within(pattern, view, r, work)
+                if count < 0:
+                    continue
+            grooves = pick(strict, pattern, view, r, count, work)
+        if grooves < 0 or (ridged and not folded and grooves * (most + 1) + 2 > POINTS):
             continue
         method[index] = BASE
 
-        bx, by = -ty, tx
+        bx, by = -r.ty, r.tx
         centre = bx * view.p + by * view.q
         turn_lights(frame, view, bx, by, lights, paper, work)
         half = 0.0
@@ -538,18 +575,26 @@ def line(
         plain = 1.0  # the share of the plane around the grooves
         first = 0
         while first < grooves:
-            last = grooves if ridged else first + 1
+            last = grooves if ridged and not folded else first + 1
             finish = work.near[first].finish
-            if strict and not ridged and (finish <= r.low or work.near[first].start >= r.high):
+            if strict and not ridged and not folded and (finish <= r.low or work.near[first].start >= r.high):
                 first += 1  # beside the footprint, and nothing overlaps
                 continue
             method[index] = SEGMENT_METHOD if paper else LINE
-            while last < grooves and work.near[last].start < finish - 1e-9 * (finish - work.near[first].start):
-                finish = max(finish, work.near[last].finish)
-                last += 1
+            copies = work.near[first].copies  # the plane goes with the groove to its left
+            if folded:
+                while ridged and last < grooves and work.near[last].group == work.near[first].group:
+                    last += 1
+            else:
+                while last < grooves and work.near[last].start < finish - 1e-9 * (finish - work.near[first].start):
+                    finish = max(finish, work.near[last].finish)
+                    last += 1
             n = lay(pattern, r, first, last, work)
             first = last
-            plain -= weight(paper, view, bx, by, centre, half, work.b[0], work.b[n - 1])
+            if not (folded and ridged):
+                plain -= copies * weight_all(
+                    folded, entries, work, paper, view, bx, by, centre, half, work.b[0], work.b[n - 1]
+                )
             for l in range(len(lights)):
                 if work.light[l, 3] != 0.0:
                     light = work.light[l]
@@ -560,14 +605,36 @@ def line(
                 work.x[i] = onto_base(work.b[i], work.w[i], eye_d, eye_w, eye_h)
             spans(work.b, work.x, work.low, work.high, n, foot_of(eye_d, eye_h))
             for i in range(n - 1):
+                if work.owner[i] >= 0:
+                    copies = work.near[work.owner[i]].copies
                 low, high = work.low[i], work.high[i]
-                if high <= low or high <= min(r.low, -half) or low >= max(r.high, half):
+                if (
+                    copies == 0.0
+                    or high <= low
+                    or (not folded and (high <= min(r.low, -half) or low >= max(r.high, half)))
+                ):
                     continue
-                part = weight(paper, view, bx, by, centre, half, low, high)
+                part = copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, low, high)
                 if part <= 0.0:
                     continue
+                if folded and ridged:
+                    plain -= part
                 row = tint_of(
-                    index, i, distant, pattern, frame, view, r, eye_d, eye_h, lighting, materials, slots, albedo, work
+                    index,
+                    i,
+                    distant,
+                    distant and (matte or not folded),
+                    pattern,
+                    frame,
+                    view,
+                    r,
+                    eye_d,
+                    eye_h,
+                    lighting,
+                    materials,
+                    slots,
+                    albedo,
+                    work,
                 )
                 tint = work.tint[row]
                 red += part * tint[len(lights), 0]
@@ -588,9 +655,11 @@ def line(
                         continue
                     lit = part
                     if from_x != low or to_x != high:
-                        lit = weight(paper, view, bx, by, centre, half, from_x, to_x)
+                        lit = copies * weight_all(
+                            folded, entries, work, paper, view, bx, by, centre, half, from_x, to_x
+                        )
                     red, green, blue = red + lit * tint[l, 0], green + lit * tint[l, 1], blue + lit * tint[l, 2]
-        if plain > 1e-12:
+        if abs(plain) > 1e-12:
             n_world = normal_to_world(frame, (0.0, 0.0, 1.0))
             material = materials[slots[0]]
             side = 2 if not distant or material.metallic > 0.0 or material.f90 > 0.0 else 1

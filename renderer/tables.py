@@ -112,6 +112,43 @@ class Grid(NamedTuple):
     crossing_first: Ints  # (nx * ny + 1,) where those of a cell begin; (0,) where there are none
 
 
+NO_GRID = Grid(
+    np.zeros(2), np.ones(2), np.zeros(2, np.int32), np.zeros(2), np.zeros(1, np.int32), np.zeros(0, np.int32),
+    np.zeros((0, 2)), np.zeros(0, np.int32),
+)  # fmt: skip
+
+
+FAMILY = np.dtype(
+    [
+        ("x", "f8"), ("y", "f8"),  # a point of the first path of the first period: its start; rings: their centre
+        ("tx", "f8"), ("ty", "f8"),  # T, the unit tangent of straight paths; (0, 0): rings, B points to their centre
+        ("radius", "f8"),  # rings: the largest radius, which is the first along B; else 0
+        ("period", "f8"),  # along B, > 0
+        ("count", "f8"),  # periods; inf: the tile repeats them for ever
+        ("length", "f8"),  # of each straight path; inf: no end is ever met
+        ("slip", "f8"),  # so much farther along T does each period begin than the one before
+        ("start", "f8"), ("finish", "f8"),  # where the first period's cross-sections begin and end along B, from (x, y)
+        # or the largest ring
+        ("height", "f8"), ("depth", "f8"),  # the highest point above w = 0 and the lowest below, both >= 0
+        ("half", "f8"),  # the least half-width of its grooves
+        ("first", "i4"), ("last", "i4"),  # its grooves: rows of MEMBER, first <= row < last, from left to right
+        ("folds", "i4"),  # 1: periods and their grooves are the same all along and do not overlap; 0: in others' way
+    ]
+)  # fmt: skip
+"""Grooves that a repeat sets side by side at one distance: straight and parallel, or circles about one centre. Frame
+and lengths are those of the pattern plane, pattern units; period k lies at k * period along B."""
+
+MEMBER = np.dtype(
+    [
+        ("offset", "f8"),  # where its path lies along B in the first period, from the family's point
+        ("turned", "f8"),  # -1: the path runs against T; else 1
+        ("scale", "f8"),  # of its cross-section
+        ("piece", "i4"), ("stride", "i4"),  # row of PIECE in the first period, and from one period to the next
+    ]
+)  # fmt: skip
+"""A groove of a family's period."""
+
+
 class Pattern(NamedTuple):
     """A compiled pattern, the same for every camera, light and material."""
 
@@ -132,14 +169,13 @@ class Pattern(NamedTuple):
     parts: NDArray[np.void] = np.zeros(0, PART)  # a profile at a time: those that remove, then those that add; by b0, w
     part_first: Ints = np.zeros(0, np.int32)  # (k + 1,) where each profile's parts begin, none if it is a height field;
     # (0,) where no profile overhangs
+    families: NDArray[np.void] = np.zeros(0, FAMILY)
+    members: NDArray[np.void] = np.zeros(0, MEMBER)
+    rest: Grid = NO_GRID  # over the pieces that are in no family; where there are no families, none
 
 
 BARE = Pattern(
-    Grid(
-        np.zeros(2), np.ones(2), np.zeros(2, np.int32), np.zeros(2), np.zeros(1, np.int32), np.zeros(0, np.int32),
-        np.zeros((0, 2)), np.zeros(0, np.int32),
-    ),
-    np.zeros(0, PIECE), np.zeros(0, GROOVE), np.zeros(0, PROFILE_ROW), np.zeros((0, 2)), np.zeros(0, np.int32),
+    NO_GRID, np.zeros(0, PIECE), np.zeros(0, GROOVE), np.zeros(0, PROFILE_ROW), np.zeros((0, 2)), np.zeros(0, np.int32),
     np.zeros((0, 2)), 0.0, 0.0, 0.0, 0.0, True, 0,
 )  # fmt: skip
 """The pattern of a surface without grooves."""

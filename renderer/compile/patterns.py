@@ -19,12 +19,14 @@ from numpy.typing import NDArray
 
 import schema
 from renderer import grid, paths, repeats
+from renderer.compile.families import Families, dressed, regular
 from renderer.compile.parts import Row, decompose
 from renderer.geometry.pieces import LEAST_SCALE
 from renderer.tables import (
     CORNER,
     FLAT,
     GROOVE,
+    NO_GRID,
     PART,
     PIECE,
     PROFILE,
@@ -56,6 +58,8 @@ class Paths(NamedTuple):
 
     pieces: NDArray[np.void]
     grid: Grid
+    families: Families
+    rest: Grid  # over the pieces that are in no family
 
 
 class Compiled(NamedTuple):
@@ -153,7 +157,13 @@ def trace(pattern: schema.Pattern, tolerances: Sequence[float], project: Project
         widths.append(2.0 * groove.half_width())
     pieces = np.concatenate(parts)
     width = float(np.average(widths, weights=[max(len(part), 1) for part in parts]))
-    return Paths(pieces, grid.build(pieces, pattern.tile, max(width, 1e-9)))
+    width = max(width, 1e-9)
+    families = regular(pattern, pieces)
+    rest = NO_GRID
+    if len(families.rest) and len(families.families):
+        rest = grid.build(pieces[families.rest], pattern.tile, width)
+        rest = rest._replace(items=families.rest[rest.items])
+    return Paths(pieces, grid.build(pieces, pattern.tile, width), families, rest)
 
 
 def _chains(path: schema.Path, tolerance: float, project: Project | None) -> list[Chain]:
@@ -262,12 +272,14 @@ def dress(pattern: schema.Pattern, traced: Paths) -> Compiled:
     far = half * np.maximum(np.sqrt(1.0 + mitre**2), np.where(ended, math.sqrt(2.0), 1.0))
     lines = bool(np.all(pieces["curvature"] == 0.0))
     sine = pieces["tx"] * pieces["ty"][0] - pieces["ty"] * pieces["tx"][0] if len(pieces) else np.zeros(0)
+    points = np.array(profiles.points, float).reshape(-1, 2)
+    families, members = dressed(traced.families, pieces, grooves, rows, points)
     tables_out = Pattern(
         grid=traced.grid,
         pieces=pieces,
         grooves=grooves,
         profiles=rows,
-        points=np.array(profiles.points, float).reshape(-1, 2),
+        points=points,
         facet_slot=np.array(slots, np.int32),
         scale_table=np.array(tables, float).reshape(-1, 2),
         height=float(np.max(of["height"] * most, initial=0.0)),
@@ -278,6 +290,9 @@ def dress(pattern: schema.Pattern, traced: Paths) -> Compiled:
         near=_near(traced, float(np.max(far, initial=0.0))),
         parts=np.array(profiles.parts, PART),
         part_first=np.array(profiles.part_first if profiles.parts else [], np.int32),
+        families=families,
+        members=members,
+        rest=traced.rest,
     )
     return Compiled(tables_out, tuple(names))
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.kernel import leaf
-from renderer.tables import Pattern
+from renderer.tables import Grid, Pattern
 
 
 class Nearby(NamedTuple):
@@ -39,7 +39,12 @@ def find(pattern: Pattern, found: Nearby, x0: float, y0: float, x1: float, y1: f
     The caller enlarges the rectangle by the reach of the cross-sections: the grid knows the paths alone, so that a
     new profile leaves it as it is.
     """
-    grid = pattern.grid
+    return find_in(pattern.grid, found, x0, y0, x1, y1, capacity)
+
+
+@leaf
+def find_in(grid: Grid, found: Nearby, x0: float, y0: float, x1: float, y1: float, capacity: int) -> int:
+    """`find` among the pieces of one grid, which may list a part of the pattern's."""
     right = grid.origin[0] + grid.cell[0] * grid.shape[0]
     top = grid.origin[1] + grid.cell[1] * grid.shape[1]
     first_x = last_x = first_y = last_y = 0

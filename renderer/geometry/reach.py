@@ -1,0 +1,44 @@
+"""How far around a footprint matters to parallel grooves, and the grooves that are laid out there."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+STRAIGHT = 0.02
+"""How far, as a part of the footprint's width across the groove, a path may bend away from its tangent, before it no
+longer counts as straight."""
+TURNED = 0.02
+"""The angle by which a path may turn, radians, between a footprint and what is seen through it or shades that: facets
+there are not turned as they are in the footprint's middle. The pixel's error is about a twentieth of it."""
+
+# A groove near the footprint.
+NEAR = np.dtype(
+    [
+        ("piece", "i8"),
+        ("start", "f8"), ("finish", "f8"),  # where its cross-section begins and ends along B, from the centre
+        ("axis", "f8"),  # where its path lies
+        ("turned", "f8"),  # -1: the path runs against T; else 1
+        ("scale", "f8"),
+        ("copies", "f8"),  # as many as it stands for; 0: it only hides others and shades them
+        ("group", "i8"),  # grooves of one group share a cross-section, where repeats are folded
+    ]
+)  # fmt: skip
+
+
+class Reach(NamedTuple):
+    """The frame of parallel grooves at the footprint's centre, and how far around it matters; pattern units."""
+
+    tx: float  # T; B is (-ty, tx)
+    ty: float
+    eye_t: float  # shift along T and B for a unit of height towards the eye
+    eye_b: float
+    low: float  # the footprint along B
+    high: float
+    length: float  # the farthest it gets from its centre along T, and how far it does on root mean square
+    spread: float
+    wide_low: float  # ... with what is seen through it, or shades that
+    wide_high: float
+    long_low: float  # the same along T
+    long_high: float
