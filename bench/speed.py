@@ -1,4 +1,4 @@
-"""What grooves cost: a frame of figure 14 by `line` beside the same frame with no grooves."""
+"""What grooves cost: a frame of figure 14 by `line` beside one with no grooves, and very many grooves beside many."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ from typing import Any
 
 import numpy as np
 
+import schema
 from bench.report import Line, at_most
 from bench.scenes import load, timed
 from renderer.compile import PatternCache
 
 SIZE = (640, 480)
 RUNS = 15
+COUNTS = (250, 25_000)
+FAR = (64, 48)  # of figure 14: 4 to 20 of the 250 grooves a pixel
 
 
 def measure() -> tuple[list[Line], dict[str, Any]]:
@@ -23,9 +26,31 @@ def measure() -> tuple[list[Line], dict[str, Any]]:
     for _ in range(RUNS):
         for method, spent in seconds.items():
             spent.append(timed(scene, method, SIZE, patterns=cache)[1])
+    crowds = {count: crowd(count) for count in COUNTS}
+    spent_far: dict[int, list[float]] = {count: [] for count in COUNTS}
+    for run in range(4 * RUNS + 1):
+        for count, furrows in crowds.items():
+            _, _, picture = timed(furrows, "auto", FAR, patterns=cache)
+            if run > 0:
+                spent_far[count].append(picture.seconds["line"])
+    few, many = (float(np.median(spent_far[count])) for count in COUNTS)
     line, base = (float(np.median(seconds[method])) for method in ("line", "base"))
     return [
         Line("figure 14, 640x480: base", base, "s"),
         Line("figure 14, 640x480: line", line, "s"),
         at_most("figure 14, 640x480: line / base", line / base, 2.5),
-    ], {"resolution": SIZE, "seconds": seconds}
+        Line("figure 14, 64x48: line, 250 grooves", few, "s"),
+        Line("figure 14, 64x48: line, 25,000 grooves", many, "s"),
+        at_most("figure 14, 64x48: line, 25,000 / 250 grooves", many / few, 1.5),
+    ], {"resolution": SIZE, "seconds": seconds, "far": spent_far}
+
+
+def crowd(count: int) -> schema.Scene:
+    """Figure 14 with so many grooves over the same plate, as much narrower and shallower as they are more."""
+    scene = load("parallel").model_dump(mode="json")
+    d = 250.0 / count
+    furrow = scene["patterns"]["furrows"]["grooves"][0]
+    furrow["path"]["points"] = [[0.5 * d - 125.0, -200], [0.5 * d - 125.0, 400]]
+    furrow["profile"] |= {"width": d, "depth": 0.45 * d}
+    furrow["repeat"] |= {"count": count, "step": [d, 0]}
+    return schema.Scene.model_validate(scene)

@@ -659,7 +659,9 @@ def line(
                             folded, entries, work, paper, view, bx, by, centre, half, from_x, to_x
                         )
                     red, green, blue = red + lit * tint[l, 0], green + lit * tint[l, 1], blue + lit * tint[l, 2]
-        if abs(plain) > 1e-12:
+        if folded and plain < 0.0:  # what a fold is off by
+            red, green, blue = red / (1.0 - plain), green / (1.0 - plain), blue / (1.0 - plain)
+        if plain > 1e-12:
             n_world = normal_to_world(frame, (0.0, 0.0, 1.0))
             material = materials[slots[0]]
             side = 2 if not distant or material.metallic > 0.0 or material.f90 > 0.0 else 1

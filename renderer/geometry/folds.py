@@ -44,6 +44,7 @@ FLAT_ENOUGH = (
 )
 SKEW = 0.3  # ... along a run seen at two places: its fourth power counts
 RUNS = 32.0  # that a run is cut into at most
+FAR_OFF = 2.0**24  # periods, where there is no first
 SUMS = fixed(1024)  # entries of a sum over periods
 SCANNED = fixed(2048)  # pieces of no family that are looked at near a footprint
 
@@ -53,7 +54,10 @@ def family_at(family: np.void, p: float, q: float) -> tuple[float, float, float]
     """T at a point of the plane, and where along B from there the first path lies."""
     x, y = family.x - p, family.y - q
     if family.radius == 0.0:
-        return family.tx, family.ty, y * family.tx - x * family.ty
+        axis = y * family.tx - x * family.ty
+        if math.isinf(family.count):  # without an end to either side: counted from so far off that none is met
+            axis -= (math.floor(axis / family.period) + FAR_OFF) * family.period
+        return family.tx, family.ty, axis
     distance = math.hypot(x, y)
     if distance == 0.0:
         return 1.0, 0.0, -family.radius
