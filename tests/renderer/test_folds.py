@@ -114,7 +114,7 @@ def test_a_fold_is_the_sum_of_its_copies(
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("profile", [V, RIDGED], ids=["v", "ridged"])
-@pytest.mark.parametrize("count", [2500, 25000])
+@pytest.mark.parametrize("count", [25000])
 def test_many_grooves_against_samples(
     kind: str, profile: list[list[float]], count: int, plate: Plate, check: Check
 ) -> None:
@@ -152,7 +152,7 @@ def test_whole_periods_from_straight_above(count: int, method: str, plate: Plate
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("profile", [V, RIDGED, FULL], ids=["v", "ridged", "full"])
-@pytest.mark.parametrize("count", [2500, 25000])
+@pytest.mark.parametrize("count", [25000])
 def test_shares_sum_to_one(kind: str, profile: list[list[float]], count: int, plate: Plate, check: Check) -> None:
     """Plane and facets shine, each in a colour of its own."""
     dark = {"base_color": [0, 0, 0], "specular": 0}
