@@ -168,9 +168,12 @@ def enclose(faces: Faces, at: int) -> None:
 
 
 @leaf
-def is_along(polygon: Floats, count: int, x0: float, y0: float, x1: float, y1: float, near: float) -> int:
-    """On which side of the line from (x0, y0) to (x1, y1) a polygon lies that has an edge along it: 1 left, 2 right;
-    else 3."""
+def within(
+    polygon: Floats, count: int, x0: float, y0: float, x1: float, y1: float, near: float
+) -> tuple[float, float, int]:  # fmt: skip
+    """From where to where, 0 to 1, the line from (x0, y0) to (x1, y1) runs in a polygon or along its edge; and on which
+    side of the line the polygon lies: 1 left, 2 right, 3 both."""
+    low, high, sides = 0.0, 1.0, 3
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
         ex, ey = polygon[j, 0] - polygon[i, 0], polygon[j, 1] - polygon[i, 1]
@@ -180,8 +183,15 @@ def is_along(polygon: Floats, count: int, x0: float, y0: float, x1: float, y1: f
         d0 = (ex * (y0 - polygon[i, 1]) - ey * (x0 - polygon[i, 0])) / long
         d1 = (ex * (y1 - polygon[i, 1]) - ey * (x1 - polygon[i, 0])) / long
         if abs(d0) <= near and abs(d1) <= near:
-            return 1 if ex * (x1 - x0) + ey * (y1 - y0) > 0.0 else 2
-    return 3
+            if sides == 3:
+                sides = 1 if ex * (x1 - x0) + ey * (y1 - y0) > 0.0 else 2
+        elif d0 <= near and d1 <= near:
+            high = -1.0
+        elif d0 < 0.0:
+            low = max(low, d0 / (d0 - d1))
+        elif d1 < 0.0:
+            high = min(high, d0 / (d0 - d1))
+    return low, high, sides
 
 
 @leaf
@@ -215,24 +225,7 @@ def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces)
             continue
         if max(y0, y1) < box[1] - near or min(y0, y1) > box[3] + near:
             continue
-        polygon, count = strips.polygon[i], strips.corners[i]
-        low, high = 0.0, 1.0
-        for k in range(count):
-            m = k + 1 if k + 1 < count else 0
-            ex, ey = polygon[m, 0] - polygon[k, 0], polygon[m, 1] - polygon[k, 1]
-            edge = math.hypot(ex, ey)
-            if edge <= 1e-3 * near:
-                continue
-            d0 = (ex * (y0 - polygon[k, 1]) - ey * (x0 - polygon[k, 0])) / edge
-            d1 = (ex * (y1 - polygon[k, 1]) - ey * (x1 - polygon[k, 0])) / edge
-            if abs(d0) <= near and abs(d1) <= near:
-                continue
-            if d0 <= near and d1 <= near:
-                high = -1.0
-            elif d0 < 0.0:
-                low = max(low, d0 / (d0 - d1))
-            elif d1 < 0.0:
-                high = min(high, d0 / (d0 - d1))
+        low, high, sides = within(strips.polygon[i], strips.corners[i], x0, y0, x1, y1, near)
         if (high - low) * long <= near:
             continue
         if n == BESIDE or stops + 2 > STOPS:
@@ -242,7 +235,7 @@ def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces)
         faces.beside[n, 2] = height[0] * x0 + height[1] * y0 + height[2]
         faces.beside[n, 3] = height[0] * x1 + height[1] * y1 + height[2]
         faces.beside_tag[n, 0], faces.beside_tag[n, 1], faces.beside_tag[n, 2] = i, strips.tag[i, 3], strips.tag[i, 4]
-        faces.beside_tag[n, 3] = is_along(polygon, count, x0, y0, x1, y1, near)
+        faces.beside_tag[n, 3] = sides
         faces.stop[stops], faces.stop[stops + 1] = low, high
         stops += 2
         n += 1
