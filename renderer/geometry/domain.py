@@ -61,12 +61,10 @@ def aim(frame: np.void, view: View, lights: NDArray[np.void], domain: Domain) ->
 
 
 @leaf
-def spread(
-    pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], domain: Domain, slab: Floats
-) -> bool:  # fmt: skip
+def spread(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], domain: Domain) -> bool:
     """Write the slabs of a footprint along the axes chosen; False where they have no end."""
     high, low, dw = pattern.height, -pattern.depth, frame.eye[2]
-    n = domain.made[0]
+    n, slab = domain.made[0], domain.slab
     for k in range(n):
         slab[k, 0], slab[k, 1] = math.inf, -math.inf
     top = min(high, dw)
@@ -93,12 +91,11 @@ def spread(
 
 
 @leaf
-def settle(domain: Domain, slab: Floats, more: float) -> None:
-    """Take these slabs, on each side wider by `more`, for the domain's own, and draw its outline."""
+def settle(domain: Domain) -> None:
+    """Draw the outline that the slabs bound."""
     n = domain.made[0]
     outline, planes = domain.outline, domain.planes
     for k in range(n):
-        domain.slab[k, 0], domain.slab[k, 1] = slab[k, 0] - more, slab[k, 1] + more
         for side in range(2):
             sign = 1.0 - 2.0 * side
             planes[2 * k + side, 0], planes[2 * k + side, 1] = sign * domain.axis[k, 0], sign * domain.axis[k, 1]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.domain import AXES, Domain, aim, domain_of, settle, spread
+from renderer.geometry.domain import Domain, aim, domain_of, settle, spread
 from renderer.geometry.faces import Faces, envelope, faces_of
 from renderer.geometry.query import Nearby, find, nearby
 from renderer.geometry.strips import Strips, divide, lay, strips_of
@@ -32,7 +32,6 @@ class Local(NamedTuple):
     domain: Domain
     strips: Strips
     faces: Faces
-    slab: Floats  # (AXES, 2) what a square needs
     square: NDArray[np.void]  # (1,) FOOTPRINT: what the faces are made for
     at: Floats  # (BLOCKS, 3) the block of each size last tried, in its sizes, and whether its faces are held: 1
 
@@ -40,7 +39,7 @@ class Local(NamedTuple):
 @leaf
 def local_of(pattern: Pattern) -> Local:
     return Local(
-        nearby(pattern, CAPACITY), domain_of(), strips_of(), faces_of(), np.empty((AXES, 2)), np.zeros(1, FOOTPRINT),
+        nearby(pattern, CAPACITY), domain_of(), strips_of(), faces_of(), np.zeros(1, FOOTPRINT),
         np.full((len(BLOCKS), 3), math.inf),
     )  # fmt: skip
 
@@ -84,7 +83,7 @@ def surround(
                 at[j, 0] = math.inf
         aim(frame, view, lights, local.domain)
         size = thinnest(view, 1.0 / max(side, 1))
-        finite = spread(pattern, frame, view, lights, local.domain, local.slab)
+        finite = spread(pattern, frame, view, lights, local.domain)
         if finite and make(pattern, size, FEW[k], tolerance, most, local):
             at[k, 2] = 1.0
             return MADE, view
@@ -118,14 +117,14 @@ def thinnest(view: View, part: float) -> float:
 
 @leaf
 def make(pattern: Pattern, size: float, few: int, tolerance: float, most: int, local: Local) -> bool:
-    """Make the faces of what a square needs, `slab`, for footprints of this size, pattern units. False where more than
-    `few` pieces or `most` strips are near, or there is no room."""
-    domain, slab, found, strips, faces = local.domain, local.slab, local.found, local.strips, local.faces
+    """Make the faces above the domain for footprints of this size, pattern units. False where more than `few` pieces or
+    `most` strips are near, or there is no room."""
+    domain, found, strips, faces = local.domain, local.found, local.strips, local.faces
     m = pattern.reach
     stepped = pattern.height > 0.0
     for groove in pattern.grooves:
         stepped = stepped or groove.priority > 0
-    settle(domain, slab, 0.0)
+    settle(domain)
     rim = domain.slab
     count = find(pattern, found, rim[0, 0] - m, rim[1, 0] - m, rim[0, 1] + m, rim[1, 1] + m, few)
     room = count >= 0
