@@ -27,7 +27,7 @@ ARC_CHORD = 0.05  # an arc is listed by chords that leave it by this part of a c
 
 
 def build(pieces: NDArray[np.void], tile: tuple[float, float] | None, width: float) -> Grid:
-    """The grid of pieces (n,) PIECE or SEGMENT.
+    """The grid of pieces (n,) PIECE.
 
     tile: period of the pattern, None: it does not repeat. width: the mean width of the grooves. Lengths in pattern
     units.

@@ -178,7 +178,7 @@ def _chains(path: schema.Path, tolerance: float, project: Project | None) -> lis
     if isinstance(path, schema.SpiralPath):
         fine = min(tolerance, CURVE_TOLERANCE * 2.0 * path.outer_radius)
         return paths.spiral(path.center, path.inner_radius, path.outer_radius, path.turns, path.angle, fine)
-    rough = np.concatenate([chain.segments for chain in paths.svg(path.d, path.flip_y, math.inf)])
+    rough = np.concatenate([_pieces(chain) for chain in paths.svg(path.d, path.flip_y, math.inf)])
     low, high, _ = grid.extents(rough)
     return paths.svg(path.d, path.flip_y, min(tolerance, CURVE_TOLERANCE * float(np.hypot(*(high - low)))))
 

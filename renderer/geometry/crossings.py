@@ -72,7 +72,7 @@ def find_crossings(
 ) -> Floats:
     """The points (m, 2) at which pieces cross, cell by cell of their grid; none where there are more than `most`.
 
-    pieces: PIECE or SEGMENT. A joint of two pieces is no crossing.
+    pieces: PIECE. A joint of two pieces is no crossing.
     """
     points = np.empty((64, 2))
     count = 0
