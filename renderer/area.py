@@ -29,20 +29,19 @@ from renderer.geometry.polygon import CORNERS, Counts, area, subtract
 from renderer.geometry.sight import (
     Seen,
     colour_at,
-    halves_of,
+    hidden_by,
     is_bent,
     is_plain,
-    may_hide,
+    may_light,
     see,
     seen_of,
     slot_of,
     tinge,
 )
-from renderer.geometry.strips import STRIPS as STRIPS
 from renderer.kernel import borrow, keep, kernel, leaf
-from renderer.tables import AREA, DIRECTIONAL, Camera, Floats, Lighting, Pattern
+from renderer.shading import are_distant
+from renderer.tables import AREA, NOT_MINE, Camera, Floats, Lighting, Pattern
 
-NOT_MINE = 255  # in `method`: left to another method
 PARTS = 512  # polygons that are left of one face
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 0.1  # in tolerances: the shares of a footprint sum to one within this, or it is left to another method
@@ -75,23 +74,13 @@ def hide(s: int, f: int, which: int, n: int, footprint: np.void, faces: Faces, s
 
     Polygons are in the footprint's square, 0 to 1. Negative where there is no room.
     """
-    size, near, planes = footprint.size, seen.near[f], parts.planes
     for k in range(seen.aways[s]):
-        b = seen.away[s, k]
-        if b == f or not may_hide(s, f, b, faces, seen):
-            continue
-        if seen.half[s, b, 0] < 0 and not halves_of(s, b, faces, seen):
+        count = hidden_by(seen.away[s, k], s, f, footprint, faces, seen, parts.planes)
+        if count < 0:
             return -1
-        first, count = seen.half[s, b, 0], seen.half[s, b, 1]
-        for i in range(count):
-            h = seen.halves[first + i]
-            x, y = h[0] + h[3] * near[0], h[1] + h[3] * near[1]
-            c = h[2] + h[3] * near[2] + x * footprint.x + y * footprint.y
-            planes[i, 0], planes[i, 1], planes[i, 2] = x * size, y * size, c
-            long = abs(planes[i, 0]) + abs(planes[i, 1]) + abs(c)
-            if long > 0.0:
-                planes[i, 0], planes[i, 1], planes[i, 2] = planes[i, 0] / long, planes[i, 1] / long, c / long
-        n = subtract(parts.polygon[which], parts.corners[which], n, planes, count, LEAST, parts.one, parts.two)
+        if count == 0:
+            continue
+        n = subtract(parts.polygon[which], parts.corners[which], n, parts.planes, count, LEAST, parts.one, parts.two)
         if n <= 0:
             break
     return n
@@ -169,9 +158,7 @@ def area_sampling(
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
     lights = lighting.lights
     eye = len(lights)
-    distant = True
-    for l in range(len(lights)):
-        distant = distant and lights[l].kind == DIRECTIONAL
+    distant = are_distant(lights)
     for index in chosen:
         footprint = footprints[index]
         frame = frames[footprint.frame]
@@ -205,9 +192,7 @@ def area_sampling(
                 light = source if source < eye else -1
                 which, m = 0, n
                 if light >= 0:
-                    if seen.facing[light, f] <= 0.0 or seen.source[light, 2] <= 0.0:
-                        continue
-                    if (footprint.blocked >> np.uint64(light)) & np.uint64(1):
+                    if not may_light(light, f, footprint, seen):
                         continue
                     if seen.aways[light] > 0:
                         which = 1

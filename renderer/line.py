@@ -23,18 +23,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.folds import SUMS, crowded, family_at, fold, is_alone, runs_straight
+from renderer.geometry.folds import SUMS, crowded, extent_along, family_at, fold, is_alone, runs_straight
 from renderer.geometry.pieces import is_beyond, locate, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find, nearby, over_crossing
 from renderer.geometry.reach import NEAR, STRAIGHT, TURNED, Reach
 from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, shifts, spans
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, callee, fixed, keep, kernel, leaf
-from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
+from renderer.shading import ambient, are_distant, light_to_pattern, lit_by, normal_to_world, to_world, unit
 from renderer.tables import (
     BASE,
-    DIRECTIONAL,
     LINE,
+    NOT_MINE,
     SCALE_SINE,
     SCALE_TABLE,
     SEGMENT_METHOD,
@@ -53,8 +53,6 @@ KNOWN = fixed(8)  # shares of a folded footprint that are kept
 STRICT = 0  # `auto`: mark it as not its own
 LOOSE = 1  # `line` for the whole image: the grooves parallel to the nearest one, nothing else
 PAPER = 2  # `segment` for the whole image
-
-NOT_MINE = 255  # in `method`: left to another method
 
 GAUSS = 0.5 / math.sqrt(3.0)
 SLOPED = 0.003
@@ -200,12 +198,8 @@ def reach_along(
     Inside a groove a ray gets no deeper than the groove's width lets it, which bounds how far it goes on below.
     """
     bx, by = -ty, tx
-    low = high = long_low = long_high = 0.0
-    for k in range(4):
-        p, q = on_plane(view, float(k & 1), float(k >> 1))
-        across, on = (p - view.p) * bx + (q - view.q) * by, (p - view.p) * tx + (q - view.q) * ty
-        low, high = min(low, across), max(high, across)
-        long_low, long_high = min(long_low, on), max(long_high, on)
+    low, high = extent_along(view, bx, by)
+    long_low, long_high = extent_along(view, tx, ty)
     eye_b, eye_t = eye_p * bx + eye_q * by, eye_p * tx + eye_q * ty
     length = max(-long_low, long_high)
     p, q = on_plane(view, 1.0, 0.5)
@@ -224,7 +218,7 @@ def reach_along(
             wide_low, wide_high = shifts(pattern.height, below, eye_b, light_b, wide_low, wide_high)
             back, forth = shifts(pattern.height, below, eye_t, light_t, back, forth)
     wide_low, wide_high, long_low, long_high = low + wide_low, high + wide_high, long_low + back, long_high + forth
-    return Reach(tx, ty, eye_t, eye_b, low, high, length, spread, wide_low, wide_high, long_low, long_high)
+    return Reach(tx, ty, eye_t, low, high, length, spread, wide_low, wide_high, long_low, long_high)
 
 
 @leaf
@@ -336,10 +330,8 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
             g, h = work.near[k], work.near[last]
             hair = 1e-9 * (g.finish - g.start)
             same = g.scale == h.scale and g.turned == h.turned and abs(g.axis - h.axis) <= 1e-3 * hair
-            groove, other = (
-                pattern.grooves[pattern.pieces[g.piece].groove],
-                pattern.grooves[pattern.pieces[h.piece].groove],
-            )
+            groove = pattern.grooves[pattern.pieces[g.piece].groove]
+            other = pattern.grooves[pattern.pieces[h.piece].groove]
             if same and groove.profile == other.profile and groove.priority == other.priority:
                 for i in range(pattern.profiles[groove.profile].count - 1):
                     same = same and pattern.facet_slot[groove.slot + i] == pattern.facet_slot[other.slot + i]
@@ -447,7 +439,7 @@ def fold_within(
 
     How many rows, how many entries of `work.sums`, and the frame; no rows where all is left as it is.
     """
-    none = Reach(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    none = Reach(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     which = crowded(pattern, view)
     if which < 0:
         return 0, 0, none
@@ -516,9 +508,7 @@ def line(
     camera, materials, slots, albedo = borrow(camera), borrow(materials), borrow(slots), borrow(albedo)
     lights = lighting.lights
     strict, paper = mode == STRICT, mode == PAPER
-    distant = True
-    for l in range(len(lights)):
-        distant = distant and lights[l].kind == DIRECTIONAL
+    distant = are_distant(lights)
     matte = True
     for slot in slots:
         matte = matte and materials[slot].metallic == 0.0 and materials[slot].f90 == 0.0
@@ -619,23 +609,11 @@ def line(
                     continue
                 if folded and ridged:
                     plain -= part
+                kept = distant and (matte or not folded)
                 row = tint_of(
-                    index,
-                    i,
-                    distant,
-                    distant and (matte or not folded),
-                    pattern,
-                    frame,
-                    view,
-                    r,
-                    eye_d,
-                    eye_h,
-                    lighting,
-                    materials,
-                    slots,
-                    albedo,
+                    index, i, distant, kept, pattern, frame, view, r, eye_d, eye_h, lighting, materials, slots, albedo,
                     work,
-                )
+                )  # fmt: skip
                 tint = work.tint[row]
                 red += part * tint[len(lights), 0]
                 green += part * tint[len(lights), 1]

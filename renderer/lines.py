@@ -34,19 +34,19 @@ from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.sight import (
     Seen,
     colour_at,
-    halves_of,
+    hidden_by,
     is_bent,
     is_plain,
-    may_hide,
+    may_light,
     see,
     seen_of,
     slot_of,
     tinge,
 )
 from renderer.kernel import borrow, keep, kernel, leaf
-from renderer.tables import DIRECTIONAL, LINES, Camera, Floats, Lighting, Pattern
+from renderer.shading import are_distant
+from renderer.tables import LINES, NOT_MINE, Camera, Floats, Lighting, Pattern
 
-NOT_MINE = 255  # in `method`: left to another method
 LEAST = 1e-12  # intervals as short as this, of a line's length, are nothing
 WHOLE = 1e-6  # the intervals of a line sum to its length within this, or the footprint is left to another method
 CHORDED = 2.0  # ... tolerances, where chords stand for arcs and steps for scales: they are then divided by their sum
@@ -168,19 +168,12 @@ def hide(
     s: int, f: int, which: int, lines: int, footprint: np.void, faces: Faces, seen: Seen, samples: Samples
 ) -> bool:  # fmt: skip
     """Take what source s does not see of face f out of `samples.part[which]`. False where there is no room."""
-    size, near = footprint.size, seen.near[f]
     for k in range(seen.aways[s]):
-        b = seen.away[s, k]
-        if b == f or not may_hide(s, f, b, faces, seen):
-            continue
-        if seen.half[s, b, 0] < 0 and not halves_of(s, b, faces, seen):
+        count = hidden_by(seen.away[s, k], s, f, footprint, faces, seen, samples.plane)
+        if count < 0:
             return False
-        first, count = seen.half[s, b, 0], seen.half[s, b, 1]
-        for i in range(count):
-            h, plane = seen.halves[first + i], samples.plane[i]
-            x, y = h[0] + h[3] * near[0], h[1] + h[3] * near[1]
-            plane[0], plane[1] = x * size, y * size
-            plane[2] = h[2] + h[3] * near[2] + x * footprint.x + y * footprint.y
+        if count == 0:
+            continue
         left = 0
         for l in range(lines):
             n = samples.parts[which, l]
@@ -261,9 +254,7 @@ def line_sampling(
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
     lights = lighting.lights
     eye = len(lights)
-    distant = True
-    for l in range(len(lights)):
-        distant = distant and lights[l].kind == DIRECTIONAL
+    distant = are_distant(lights)
     for index in chosen:
         footprint = footprints[index]
         frame = frames[footprint.frame]
@@ -311,9 +302,7 @@ def line_sampling(
                     light = source if source < eye else -1
                     which = 0 if light < 0 else 1
                     if light >= 0:
-                        if seen.facing[light, f] <= 0.0 or seen.source[light, 2] <= 0.0:
-                            continue
-                        if (footprint.blocked >> np.uint64(light)) & np.uint64(1):
+                        if not may_light(light, f, footprint, seen):
                             continue
                         for l in range(lines):
                             samples.parts[1, l] = samples.parts[0, l]

@@ -19,23 +19,23 @@ from numpy.typing import NDArray
 
 import schema
 from renderer import CACHE, body, film, relief, shading
-from renderer.area import STRIPS, area_sampling, in_blocks
+from renderer.area import area_sampling, in_blocks
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
-from renderer.line import LOOSE, NOT_MINE, PAPER, STRICT, line
+from renderer.geometry.strips import STRIPS
+from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
-from renderer.tables import BARE, BASE, Floats, Pattern
+from renderer.tables import BARE, BASE, NOT_MINE, Floats, Pattern
 from renderer.trace import Truth
 
 TILE = 64  # pixels
 FEW_STRIPS = 128  # `auto` samples where more are near: then that is faster
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
-AOVS = ("method", "error", "cost")
 
 _READY = CACHE / "ready"  # written once all kernels have been compiled
 
@@ -46,7 +46,7 @@ class Picture:
 
     radiance: NDArray[np.float32]  # (H, W, 3) linear
     # (H, W) method: indices of tables.METHODS; error: predicted, relative to a white surface in the same light, 0 where
-    # nothing is known; cost: steps taken, of which a processor does about a hundred million a second
+    # nothing is known; cost: steps taken, in a unit of the method's own
     aovs: dict[str, film.Aov]
     # By stage, those of threads added up. By the clock: kernels (loading them), compile, solids (making what the method
     # traces in place of the patterns), total.

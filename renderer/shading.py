@@ -125,6 +125,15 @@ def lit_by(light: np.void, material: np.void, n: Vector, e: Vector, at: Vector) 
 
 
 @leaf
+def are_distant(lights: NDArray[np.void]) -> bool:
+    """Whether all lights shine from one direction each."""
+    distant = True
+    for l in range(len(lights)):
+        distant = distant and lights[l].kind == DIRECTIONAL
+    return distant
+
+
+@leaf
 def white(lighting: Lighting, at: Vector) -> float:
     """Radiance of a white matt surface at a world point, turned to each light, under the sky: what errors are measured
     by. The mean of the channels."""

@@ -39,9 +39,7 @@ MANY = 12.0  # periods across a footprint, from which on they are folded
 KINK = 0.00025  # the error that an end of a facet may make which comes into sight within a run
 ONE = 0.0064  # c up to which one period is looked at: an error of 0.0008
 EVEN = 0.0004  # the error of the mean that is taken for a sum, as a part of what is seen
-FLAT_ENOUGH = (
-    0.02  # how far, relatively, the screen's depth may change where one period is looked at: its square counts
-)
+FLAT_ENOUGH = 0.02  # how far, relatively, the screen's depth may change for one period to do: its square counts
 SKEW = 0.3  # ... along a run seen at two places: its fourth power counts
 RUNS = 32.0  # that a run is cut into at most
 FAR_OFF = 2.0**24  # periods, where there is no first

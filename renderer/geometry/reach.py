@@ -32,8 +32,7 @@ class Reach(NamedTuple):
 
     tx: float  # T; B is (-ty, tx)
     ty: float
-    eye_t: float  # shift along T and B for a unit of height towards the eye
-    eye_b: float
+    eye_t: float  # shift along T for a unit of height towards the eye
     low: float  # the footprint along B
     high: float
     length: float  # the farthest it gets from its centre along T, and how far it does on root mean square

@@ -209,6 +209,32 @@ def may_hide(s: int, f: int, b: int, faces: Faces, seen: Seen) -> bool:
 
 
 @leaf
+def hidden_by(b: int, s: int, f: int, footprint: np.void, faces: Faces, seen: Seen, planes: Floats) -> int:
+    """Write the half-planes of what face b keeps from source s of face f, in the footprint's square, 0 to 1, to
+    `planes` (CORNERS, 3): how many; 0 where it keeps nothing. Negative where there is no room."""
+    if b == f or not may_hide(s, f, b, faces, seen):
+        return 0
+    if seen.half[s, b, 0] < 0 and not halves_of(s, b, faces, seen):
+        return -1
+    size, near = footprint.size, seen.near[f]
+    first, count = seen.half[s, b, 0], seen.half[s, b, 1]
+    for i in range(count):
+        h = seen.halves[first + i]
+        x, y = h[0] + h[3] * near[0], h[1] + h[3] * near[1]
+        planes[i, 0], planes[i, 1] = x * size, y * size
+        planes[i, 2] = h[2] + h[3] * near[2] + x * footprint.x + y * footprint.y
+    return int(count)
+
+
+@leaf
+def may_light(l: int, f: int, footprint: np.void, seen: Seen) -> bool:
+    """Whether light l reaches face f in this footprint where no face keeps it off."""
+    if seen.facing[l, f] <= 0.0 or seen.source[l, 2] <= 0.0:
+        return False
+    return (footprint.blocked >> np.uint64(l)) & np.uint64(1) == 0
+
+
+@leaf
 def colour_at(
     f: int, light: int, x: float, y: float, pattern: Pattern, frame: np.void, lighting: Lighting,
     material: np.void, albedo: Floats, bent: bool, found: Nearby, faces: Faces, seen: Seen,

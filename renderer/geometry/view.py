@@ -7,7 +7,6 @@ and the denominator: exact under perspective, with no matrix to invert (DESIGN 2
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -31,9 +30,6 @@ class View(NamedTuple):
     w1: float
     p: float  # the centre's point on the base plane
     q: float
-    ex: float  # unit world vector from the surface to the eye, at the centre
-    ey: float
-    ez: float
 
 
 GRAZING = 0.2
@@ -65,11 +61,7 @@ def view_of(footprint: np.void, frame: np.void, camera: Camera) -> View:
         p1, q1 = p - 0.5 * (pu + pv), q - 0.5 * (qu + qv)
         pu, pv, p1, qu, qv, q1 = -pu, -pv, -p1, -qu, -qv, -q1
         wu, wv, w1 = 0.0, 0.0, -1.0
-    ex = -(w0[0] + 0.5 * size * (r[0] + d[0]))
-    ey = -(w0[1] + 0.5 * size * (r[1] + d[1]))
-    ez = -(w0[2] + 0.5 * size * (r[2] + d[2]))
-    length = math.sqrt(ex * ex + ey * ey + ez * ez)
-    return View(pu, pv, p1, qu, qv, q1, wu, wv, w1, p, q, ex / length, ey / length, ez / length)
+    return View(pu, pv, p1, qu, qv, q1, wu, wv, w1, p, q)
 
 
 @leaf
