@@ -142,7 +142,7 @@ def _lines(case: Case, found: Results) -> list[Line]:
     bound = "" if error.value is not None else " at most"
     what = f"{name}, RMSE{bound}"
     lines = [at_most(what, error.least, goal) if goal else Line(what, error.least), Line(name, row.seconds, "s")]
-    rival, needed = _rival(case, found)
+    rival, needed = _rival(found)
     if needed is not None:
         times = needed / row.seconds
         label = f"{name} is so many times faster than {rival} at equal error"
@@ -150,7 +150,7 @@ def _lines(case: Case, found: Results) -> list[Line]:
     return [*lines, Line(f"figure {case.figure}: the reference's floor", found.floor)]
 
 
-def _rival(case: Case, found: Results) -> tuple[str, float | None]:
+def _rival(found: Results) -> tuple[str, float | None]:
     """What is compared with at equal error, and the seconds that it takes; None: never, or not known."""
     row = found.rows[0]
     for rival in ("geometry", "csg"):
@@ -202,7 +202,7 @@ def _error_row(case: Case, found: Results) -> str:
         return f"{start}| – | – | – | no reference |"
     theirs = _error(other) if other is not None else "–"
     told = [words(one) for one in found.comparisons if one.row is row]
-    rival, needed = _rival(case, found)
+    rival, needed = _rival(found)
     if not told and needed is not None:  # another setting of the method comes nearer still
         told = [f"{needed / row.seconds:,.0f} times faster than {rival}"]
     cannot = found.state.cannot.get("geometry")

@@ -35,7 +35,6 @@ def text(value: Any, room: int = 112, indent: int = 0) -> str:
 
 TRACK, GAP, FIRST = 100, 7, 183.0  # grooves a track; bare rings between tracks and beside them, pattern units
 TRACKS = 5
-RIM = FIRST + TRACKS * (TRACK + GAP)
 PLATE = 1560.0  # side of the square that a record lies on
 DISH = 0.02  # what is bare lies so deep, only to be of another material than the plate
 V = {"type": "v", "width": 1, "depth": 0.2}
@@ -170,7 +169,6 @@ GLYPHS = {
     "viper": "M 0 .3 C .12 .5 .26 .5 .38 .34 C .5 .18 .62 .2 .68 .36 C .72 .5 .7 .6 .74 .7 C .8 .8 .92 .78 1 .68 "
     "M .78 .78 L .74 .92 M .86 .79 L .9 .92",
 }
-CARTOUCHE = "M .18 0 L .82 0 C 1.06 0 1.06 1 .82 1 L .18 1 C -.06 1 -.06 0 .18 0"
 NUMBER = re.compile(r"-?\d*\.?\d+")
 
 

@@ -34,7 +34,6 @@ from renderer.errors import Fault, RenderError
 from renderer.heightmap import HeightMap, height_map
 from renderer.tables import BARE, CYLINDER, RECTANGLE, SPHERE, Floats
 
-KINDS = ("height", "normal", "anisotropy")
 K, K_LOBE = 4, 8
 _POINTS = 1 << 21  # sampled at a time
 

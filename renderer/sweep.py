@@ -86,11 +86,6 @@ class Scale(NamedTuple):
             f = np.interp(t, self.table[:, 0], self.table[:, 1])
         return np.maximum(f * self.size, _THIN * self.most)
 
-    @property
-    def straight(self) -> bool:
-        """Whether the scale is linear in s, so that straight strokes need no rings."""
-        return self.kind in (SCALE_CONSTANT, SCALE_LINEAR)
-
 
 class Stroke(NamedTuple):
     """A path with a cross-section, cut at its two ends."""

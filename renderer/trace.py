@@ -186,7 +186,7 @@ class Truth:
             for row, light in enumerate(lighting.lights):
                 lit[row] = self._lit(light, hits)
             gather(
-                camera, lighting, materials, names, start.astype(np.int64), albedo, each, directions, hits, lit,
+                lighting, materials, names, start.astype(np.int64), albedo, each, directions, hits, lit,
                 image[begin:stop], method[begin:stop],
             )  # fmt: skip
 
@@ -542,8 +542,8 @@ def leave(
 
 @kernel
 def gather(
-    camera: Camera, lighting: Lighting, materials: NDArray[np.void], names: Ints, start: NDArray[np.int64],
-    albedo: Floats, each: int, directions: Floats, hits: Hits, lit: Bools, image: Floats, method: NDArray[np.uint8],
+    lighting: Lighting, materials: NDArray[np.void], names: Ints, start: NDArray[np.int64], albedo: Floats, each: int,
+    directions: Floats, hits: Hits, lit: Bools, image: Floats, method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the samples and write the pixels' means. names: material rows of all bodies, each from `start` on."""
     lights, sky = lighting.lights, lighting.sky

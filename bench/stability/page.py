@@ -81,7 +81,7 @@ def _alone(results: list[Result]) -> Iterator[str]:
         cells = []
         for name in NAMES:
             error, result = worst(mine, name)
-            cells.append(f"{_error(error, result)} at {_value(result, factor.field)}" if result else "0")
+            cells.append(f"{_error(error)} at {_value(result, factor.field)}" if result else "0")
         yield f"| {factor.label} | {' | '.join(cells)} |"
 
 
@@ -104,11 +104,11 @@ def _pairs(results: list[Result]) -> Iterator[str]:
             ),
             "",
         )
-        told = (name, len(scores), *share, failed, outliers, _error(error, result), where)
+        told = (name, len(scores), *share, failed, outliers, _error(error), where)
         yield f"| {' | '.join(map(str, told))} |"
 
 
-def _error(error: float, result: Result | None) -> str:
+def _error(error: float) -> str:
     return f"{error:.1e}".replace("e-0", "e-").replace("e+00", "") if math.isfinite(error) else "failed"
 
 

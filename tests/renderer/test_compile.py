@@ -15,7 +15,6 @@ from renderer.compile import PatternCache, internal, table_bytes
 from renderer.tables import Pattern
 
 Json = dict[str, Any]
-Check = Callable[[Json], schema.Scene]
 V = {"type": "v", "width": 0.1, "depth": 0.05}
 
 

@@ -27,7 +27,6 @@ from renderer.compile import PatternCache
 from .scenes import BOX, DITCH, RIDGE, SKEW, Floats, Json, family, line
 
 Plate = Callable[..., Json]
-Check = Callable[[Json], object]
 
 HALVINGS = 12
 BRIGHTEST = 0.7 * (2.0 + 1.0) / math.pi  # Lambert, base_color / pi of what the lights send to a plane facing them
