@@ -3,7 +3,6 @@ rendered as the ground truth."""
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Callable
 from typing import Any
@@ -11,32 +10,20 @@ from typing import Any
 import numpy as np
 import pytest
 import trimesh
-from numpy.typing import NDArray
 
 import schema
 from renderer import body as truth
 from renderer.compile import CompiledScene, PatternCache, compile_scene
 from renderer.errors import RenderError
-from renderer.export import Body, body, unpaired, volume
+from renderer.export import body, volume
 from renderer.tables import LIGHT
 
-Json = dict[str, Any]
-Floats = NDArray[np.float64]
+from .scenes import Floats, Json
+from .solids import BOX, RIDGE, ROUNDING, TOWER, TURN, V, assert_closed, groove, tracer
+
 Corner = tuple[Any, Any, Any]  # place, uv, normal
 Soup = list[list[Corner]]
-
-TURN = 2.0 * math.pi
-ROUNDING = 2.0**-23  # how far single precision moves a point whose coordinates are below 2
-
-V = {"type": "v", "width": 0.3, "depth": 0.1}
-RIDGE = {"type": "v", "width": 0.3, "depth": -0.1}
-BOX = {"type": "trapezoid", "width": 0.2, "floor": 0.2, "depth": 0.15}
-TOWER = {"type": "trapezoid", "width": 0.5, "floor": 0.5, "depth": -0.1}
 AREA = 0.5 * 0.3 * 0.1  # of a V's cross-section
-
-
-def groove(points: list[list[float]], profile: Json, **more: Any) -> Json:
-    return {"path": {"type": "polyline", "points": points}, "profile": profile, **more}
 
 
 def quad(places: Any, uv: Any, normal: Any) -> Soup:
@@ -155,10 +142,6 @@ def compiled(plate: Callable[..., Json]) -> Callable[..., CompiledScene]:
     return make
 
 
-def tracer(solid: Body) -> trimesh.Trimesh:
-    return trimesh.Trimesh(solid.vertices.astype(np.float64), solid.triangles, process=False)
-
-
 ACROSS = [groove([[-1, 1], [9, 1.2]], V), groove([[3, -1], [3.2, 4]], BOX), groove([[1, 0.5], [2, 1.5]], RIDGE)]
 SEAM = [
     groove([[-1, 0.5], [1, 1.7]], V), groove([[5, 1.6], [8, 0.2]], RIDGE), groove([[0, 1.2], [0, 1.9]], BOX),
@@ -180,14 +163,7 @@ SHAPES: dict[str, tuple[Soup, tuple[float, float]]] = {
 def test_closed(shape: str, grooves: list[Json], compiled: Callable[..., CompiledScene]) -> None:
     soup, scale = SHAPES[shape]
     solid = body(compiled(soup, grooves, scale, rotate=[20, 30, 40], translate=[0.3, 0.2, 0.7]), 0)
-    assert not len(unpaired(solid.triangles))
-    assert len(np.unique(solid.vertices, axis=0)) == len(solid.vertices)
-    read = trimesh.load(io.BytesIO(tracer(solid).export(file_type="stl")), file_type="stl")  # single points, merged
-    assert isinstance(read, trimesh.Trimesh)
-    assert len(read.faces) == len(solid.triangles)
-    assert read.is_watertight
-    assert read.is_winding_consistent
-    assert read.body_count == 1
+    assert_closed(solid)
     assert volume(solid) > 0.0
 
 

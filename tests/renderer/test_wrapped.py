@@ -3,44 +3,28 @@ the pattern is."""
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
-import trimesh
-from numpy.typing import NDArray
 
 import schema
 from renderer import maps
 from renderer.compile import CompiledScene, PatternCache, compile_scene
 from renderer.errors import RenderError
-from renderer.export import Body, body, unpaired, volume
+from renderer.export import body, volume
 from renderer.wrapped import CELL
 
-Json = dict[str, Any]
-Floats = NDArray[np.float64]
+from .scenes import Floats, Json
+from .solids import BOX, RIDGE, ROUNDING, TOWER, TURN, V, assert_closed, groove, tracer
 
-TURN = 2.0 * math.pi
 SPHERE: Json = {"type": "sphere", "radius": 1}
 CYLINDER: Json = {"type": "cylinder", "radius": 1, "height": 2}
 TALL = {"sphere": math.pi, "cylinder": 2.0}  # with these mappings a pattern unit is about a world unit
 COLUMNS = math.ceil(TURN / CELL)
 GON = 0.5 * COLUMNS * math.sin(TURN / COLUMNS)  # the area of the regular polygon in the unit circle
-ROUNDING = 2.0**-23  # how far single precision moves a point whose coordinates are below 2
-
-V = {"type": "v", "width": 0.3, "depth": 0.1}
-RIDGE = {"type": "v", "width": 0.3, "depth": -0.1}
-BOX = {"type": "trapezoid", "width": 0.2, "floor": 0.2, "depth": 0.15}
-TOWER = {"type": "trapezoid", "width": 0.5, "floor": 0.5, "depth": -0.1}
-
-
-def groove(points: list[list[float]], profile: Json, **more: Any) -> Json:
-    return {"path": {"type": "polyline", "points": points}, "profile": profile, **more}
-
-
 CASES: dict[str, list[Json]] = {
     "crossing": [groove([[-1, 1], [9, 1.2]], V), groove([[3, -1], [3.2, 4]], BOX), groove([[1, 0.5], [2, 1.5]], RIDGE)],
     # Grooves that begin, end, cross and run along the seam, over poles and ends.
@@ -69,24 +53,13 @@ def compiled(plate: Callable[..., Json]) -> Callable[..., CompiledScene]:
     return make
 
 
-def tracer(solid: Body) -> trimesh.Trimesh:
-    return trimesh.Trimesh(solid.vertices.astype(np.float64), solid.triangles, process=False)
-
-
 @pytest.mark.parametrize("turned", [False, True])
 @pytest.mark.parametrize("shape", [SPHERE, CYLINDER], ids=lambda shape: shape["type"])
 @pytest.mark.parametrize("name", CASES)
 def test_closed(name: str, shape: Json, turned: bool, compiled: Callable[..., CompiledScene]) -> None:
     place = {"rotate": [20, 30, 40], "translate": [0.3, 0.2, 0.7]} if turned else {}
     solid = body(compiled(shape, CASES[name], **place), 0)
-    assert not len(unpaired(solid.triangles))
-    assert len(np.unique(solid.vertices, axis=0)) == len(solid.vertices)
-    read = trimesh.load(io.BytesIO(tracer(solid).export(file_type="stl")), file_type="stl")  # single points, merged
-    assert isinstance(read, trimesh.Trimesh)
-    assert len(read.faces) == len(solid.triangles)
-    assert read.is_watertight
-    assert read.is_winding_consistent
-    assert read.body_count == 1
+    read = assert_closed(solid)
     assert read.volume == pytest.approx(volume(solid))
     # Grooves and ridges are 0.1 or 0.15 deep and cover less than a third.
     bare = 4.0 / 3.0 * math.pi if shape is SPHERE else TURN
