@@ -48,7 +48,8 @@ def render(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="OUT", help="The picture: .png, .exr or .npy.")],
     method: Annotated[str | None, typer.Option(metavar="M", help="Instead of the scene's.")] = None,
     samples: Annotated[
-        int | None, typer.Option(metavar="N", min=1, max=65536, help="Samples a pixel, instead of the scene's.")
+        int | None,
+        typer.Option(metavar="N", min=1, max=65536, help="Of lines, csg, geometry, relief; instead of the scene's."),
     ] = None,
     texels: Annotated[
         int | None, typer.Option(metavar="N", min=16, max=8192, help="Method relief's, instead of the scene's.")

@@ -9,7 +9,9 @@ from schema import Render
 from schema.scene import MAX_PIXELS
 
 METHODS: tuple[str, ...] = get_args(Render.model_fields["method"].annotation)
-SAMPLED = frozenset({"auto", "lines", "csg", "geometry", "relief"})  # the methods that take samples
+# The methods that take `samples`. What `auto` and the others leave to csg takes as many as the tolerance asks for,
+# 64 x 64 a footprint at the most, whatever `samples` says.
+SAMPLED = frozenset({"lines", "csg", "geometry", "relief"})
 MAX_SIDE = 8192  # as the camera's
 
 

@@ -139,7 +139,7 @@ async def render(
     request: Request,
     method: Annotated[str | None, Query(description="instead of the scene's", max_length=32)] = None,
     samples: Annotated[
-        int | None, Query(description="samples a pixel, where the method samples", ge=1, le=65536)
+        int | None, Query(description="samples a pixel, of methods lines, csg, geometry and relief", ge=1, le=65536)
     ] = None,
     texels: Annotated[
         int | None, Query(description="texels along method relief's texture, instead of the scene's", ge=16, le=8192)

@@ -27,7 +27,7 @@ class Settings:
     queue: int = 8  # renders that wait; one more is refused with 503
     threads: int = max(1, (os.cpu_count() or 2) // 2)  # of one render
     pixel_limit: int = 1 << 24  # of one picture
-    sample_limit: int = 1 << 30  # pixels times samples of one picture
+    sample_limit: int = 1 << 30  # pixels times samples of one picture, where the method takes `samples`
     triangle_limit: int = 1 << 19  # of an exported solid
     texel_limit: int = 1 << 22  # of an exported map
     time_limit: float = 300.0  # of one render, from its start

@@ -133,7 +133,8 @@ def test_too_many_pixels(scene: dict[str, Any], fake: FakeRenderer) -> None:
         assert client.post("/api/render", json=scene).status_code == 200
         assert_problem(client.post("/api/render?resolution=50x50", json=scene), 422, "/camera/resolution")
         assert_problem(client.post("/api/render?samples=300&method=csg", json=scene), 422)
-        assert client.post("/api/render?samples=300&method=line", json=scene).status_code == 200
+        for method in ("line", "auto"):  # which take none
+            assert client.post(f"/api/render?samples=300&method={method}", json=scene).status_code == 200
 
 
 @pytest.mark.parametrize("path", ["validate", "render", "patterns", "meshes?name=a.obj"])
