@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -12,6 +13,8 @@ import httpx
 import pytest
 
 from .conftest import SETTINGS, FakeRenderer, assert_problem, open_client, open_server, wait_for
+
+JSON = {"Content-Type": "application/json"}
 
 
 def test_full_queue(scene: dict[str, Any], fake: FakeRenderer) -> None:
@@ -72,29 +75,37 @@ def test_health_during_two_renders_and_large_validations(scene: dict[str, Any]) 
     scene["render"] = {"method": "csg", "samples": 1024}
     scene["camera"]["resolution"] = [320, 240]
     groove = scene["patterns"]["tiles"]["grooves"][0]
-    large = {**scene, "patterns": {"tiles": {"grooves": [groove] * 1000}}}
+    # A fifth of a second to validate.
+    large = {**scene, "patterns": {"tiles": {"grooves": [groove] * 4000}}}
     small = {**scene, "camera": {**scene["camera"], "resolution": [4, 4]}}
     with open_server(dataclasses.replace(SETTINGS, renders=2)) as address:
         assert httpx.post(f"{address}/api/render", json=small, timeout=400).status_code == 200  # kernels are there
         stop = threading.Event()
 
         def keep_on(path: str, body: dict[str, Any]) -> None:
+            text = json.dumps(body)
             while not stop.is_set():
                 try:
-                    httpx.post(f"{address}{path}", json=body, timeout=5)
+                    httpx.post(f"{address}{path}", content=text, headers=JSON, timeout=5)
                 except httpx.TimeoutException:
                     continue
 
         with ThreadPoolExecutor(3) as pool, httpx.Client() as client:
             for path, body in (("/api/render", scene), ("/api/render", scene), ("/api/validate", large)):
                 pool.submit(keep_on, path, body)
-            wait_for(lambda: client.get(f"{address}/api/health").json()["renders"] == 2)
             seconds = []
-            for _ in range(40):
-                start = time.perf_counter()
-                assert client.get(f"{address}/api/health").status_code == 200
-                seconds.append(time.perf_counter() - start)
-                time.sleep(0.05)
-            stop.set()
-        # The test's own threads take their share of the same interpreter, so one slow answer in forty may be theirs.
-        assert sorted(seconds)[-2] < 0.1, sorted(seconds)[-5:]
+            try:
+                wait_for(lambda: client.get(f"{address}/api/health").json()["renders"] == 2)
+                for _ in range(40):
+                    start = time.perf_counter()
+                    assert client.get(f"{address}/api/health").status_code == 200
+                    seconds.append(time.perf_counter() - start)
+                    time.sleep(0.05)
+            finally:
+                stop.set()
+        # Behind validations on the event loop more than half would wait for 0.15 s and more, behind a render all
+        # of them for seconds. Three in four come at once; the others may be slow, as this test's threads and
+        # the validations' share the interpreter, and other tests the processors.
+        seconds.sort()
+        assert seconds[29] < 0.1, seconds
+        assert seconds[-1] < 2.0, seconds
