@@ -187,19 +187,6 @@ def test_service_bounds_charts(client: TestClient, scene: dict[str, Any], fake: 
     assert not fake.calls
 
 
-def test_service_stops_a_chart_with_its_client(scene: dict[str, Any], fake: FakeRenderer) -> None:
-    import httpx
-
-    from .conftest import open_server, wait_for
-
-    fake.block = True
-    with open_server() as address:
-        with pytest.raises(httpx.ReadTimeout):
-            httpx.post(f"{address}/api/chart", json=scene, timeout=0.5)
-        assert fake.cancelled.wait(5)
-        wait_for(lambda: httpx.get(f"{address}/api/health").json()["renders"] == 0)
-
-
 def test_service_draws_what_it_has_when_the_seconds_are_over(scene: dict[str, Any], fake: FakeRenderer) -> None:
     """A render that does not end: the chart's time is over, and nothing was measured."""
     fake.block = True

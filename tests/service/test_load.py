@@ -31,11 +31,12 @@ def test_full_queue(scene: dict[str, Any], fake: FakeRenderer) -> None:
         assert httpx.post(f"{address}/api/render", json=scene).status_code == 200
 
 
-def test_client_that_goes_stops_its_render(scene: dict[str, Any], fake: FakeRenderer) -> None:
+@pytest.mark.parametrize("what", ["render", "chart"])
+def test_client_that_goes_stops_its_renders(what: str, scene: dict[str, Any], fake: FakeRenderer) -> None:
     fake.block = True
     with open_server() as address:
         with pytest.raises(httpx.ReadTimeout):
-            httpx.post(f"{address}/api/render", json=scene, timeout=0.5)
+            httpx.post(f"{address}/api/{what}", json=scene, timeout=0.5)
         assert fake.cancelled.wait(5)
         wait_for(lambda: httpx.get(f"{address}/api/health").json()["renders"] == 0)
 
