@@ -18,19 +18,20 @@ On flat objects the faces are made once for a block of pixels.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.colour import EVEN, colour_over, sharpness, turns
 from renderer.geometry.faces import Faces
 from renderer.geometry.local import BLOCKS, FULL, local_of
 from renderer.geometry.polygon import CORNERS, Counts, area, subtract
 from renderer.geometry.sight import (
     Seen,
-    colour_at,
+    bend_of,
     hidden_by,
-    is_bent,
     is_plain,
     may_light,
     see,
@@ -38,15 +39,15 @@ from renderer.geometry.sight import (
     slot_of,
     tinge,
 )
+from renderer.geometry.view import view_of
 from renderer.kernel import borrow, keep, kernel, leaf
-from renderer.shading import are_distant
+from renderer.shading import are_distant, to_world, white
 from renderer.tables import AREA, NOT_MINE, Camera, Floats, Lighting, Pattern
 
 PARTS = 512  # polygons that are left of one face
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 0.1  # in tolerances: the shares of a footprint sum to one within this, or it is left to another method
 CHORDED = 2.0  # ... where chords stand for arcs and steps for scales; shares are divided by their sum
-SMALL = 0.02  # a part of a footprint as small as this has one colour
 BENT = 0.5  # the error where chords stand for arcs, in tolerances
 
 
@@ -157,7 +158,7 @@ def area_sampling(
     pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
     lights = lighting.lights
-    eye = len(lights)
+    eye, turn = len(lights), np.empty(len(lights) + 1)
     distant = are_distant(lights)
     for index in chosen:
         footprint = footprints[index]
@@ -165,7 +166,9 @@ def area_sampling(
         method[index] = NOT_MINE
         if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:
             continue
-        red = green = blue = whole = 0.0
+        red = green = blue = whole = off = 0.0
+        view = view_of(footprint, frame, camera)
+        long = turns(frame, view, lights, turn)
         cost = faces.made[0] + (local.strips.made[0] * footprint.size / square.size) ** 2
         room, chorded = True, False
         for f in range(faces.made[0]):
@@ -182,7 +185,8 @@ def area_sampling(
             if n == 0:
                 continue
             material = materials[slots[slot_of(pattern, f, found, faces)]]
-            bent = is_bent(pattern, f, found, faces)
+            bend = bend_of(pattern, f, found, faces)
+            bent = bend > 0.0
             chorded = chorded or bent
             cost += seen.aways[eye]
             plain = distant and not bent and is_plain(material)
@@ -206,6 +210,7 @@ def area_sampling(
                         if m < 0:
                             room = False
                             break
+                even = math.sqrt(EVEN * tolerance / sharpness(material)) / (turn[source] + bend * long)
                 for i in range(m):
                     part, corners = parts.polygon[which, i], parts.corners[which, i]
                     total = area(part, corners)
@@ -215,27 +220,22 @@ def area_sampling(
                         tint = seen.tint[f, source]
                         red, green, blue = red + total * tint[0], green + total * tint[1], blue + total * tint[2]
                         continue
-                    # small ones in their middle, others triangle by triangle about it
-                    mx = my = 0.0
-                    for j in range(corners):
-                        mx, my = mx + part[j, 0] / corners, my + part[j, 1] / corners
-                    for j in range(corners if total > SMALL else 1):
-                        x, y, share = mx, my, total
-                        if total > SMALL:
-                            i1 = j + 1 if j + 1 < corners else 0
-                            ax, ay, bx, by = part[j, 0] - mx, part[j, 1] - my, part[i1, 0] - mx, part[i1, 1] - my
-                            x, y, share = mx + (ax + bx) / 3.0, my + (ay + by) / 3.0, 0.5 * (ax * by - ay * bx)
-                        x, y = footprint.x + footprint.size * x, footprint.y + footprint.size * y
-                        r, g, b = colour_at(
-                            f, light, x, y, pattern, frame, lighting, material, albedo, bent, found, faces, seen
-                        )
-                        red, green, blue = red + share * r, green + share * g, blue + share * b
+                    r, g, b, unsure = colour_over(
+                        f, light, part, corners, total, even, footprint, pattern, frame, lighting, material, albedo,
+                        bent, found, faces, seen,
+                    )  # fmt: skip
+                    red, green, blue, off = red + r, green + g, blue + b, off + unsure
             if not room:
                 break
         if not room or not abs(whole - 1.0) <= tolerance * (CHORDED if chorded else WHOLE):
             continue
+        error = abs(whole - 1.0) + (BENT * tolerance if chorded else 0.0)
+        if off > 0.0:
+            off /= white(lighting, to_world(frame, view.p, view.q, 0.0))
+            if not off <= tolerance:
+                continue
         method[index] = AREA
-        radiance[index, 3] = abs(whole - 1.0) + (BENT * tolerance if chorded else 0.0)
+        radiance[index, 3] = error + off
         radiance[index, 4] = cost
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / whole, green / whole, blue / whole
     keep(owned)

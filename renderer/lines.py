@@ -33,9 +33,9 @@ from renderer.geometry.query import Nearby
 from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.sight import (
     Seen,
+    bend_of,
     colour_at,
     hidden_by,
-    is_bent,
     is_plain,
     may_light,
     see,
@@ -293,7 +293,7 @@ def line_sampling(
                     shown += samples.parts[0, l]
                 if shown == 0:
                     continue
-                bent = is_bent(pattern, f, found, faces)
+                bent = bend_of(pattern, f, found, faces) > 0.0
                 material = materials[slots[slot_of(pattern, f, found, faces)]]
                 plain = distant and not bent and is_plain(material)
                 if plain:

@@ -295,9 +295,10 @@ def is_plain(material: np.void) -> bool:
 
 
 @leaf
-def is_bent(pattern: Pattern, f: int, found: Nearby, faces: Faces) -> bool:
-    """Whether the normal of a face is not the same all over."""
+def bend_of(pattern: Pattern, f: int, found: Nearby, faces: Faces) -> float:
+    """How fast the normal of a face turns on its way along the groove, radians a pattern unit."""
     if faces.tag[f, 0] < 0 or faces.tag[f, 2] != 0:
-        return False
+        return 0.0
     piece = pattern.pieces[found.piece[faces.tag[f, 0]]]
-    return piece.curvature != 0.0 or pattern.grooves[piece.groove].scale_kind != SCALE_CONSTANT
+    stretched = pattern.grooves[piece.groove].scale_kind != SCALE_CONSTANT
+    return math.inf if stretched else abs(piece.curvature)

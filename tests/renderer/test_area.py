@@ -43,9 +43,10 @@ def near(scene: Json, picture: Shot, least: float = 0.99, samples: int = SAMPLES
 
 
 def test_shares_sum_to_one(plate: Plate, picture: Shot) -> None:
-    """Of straight grooves to rounding: the predicted error is what is left."""
+    """Of straight grooves to rounding: the predicted error is what is left, where colours are the same all over."""
     straight = [groove for groove in MIXED if groove["path"]["type"] == "polyline"]
-    made = picture(plate(straight, materials=PALETTE), method="area")
+    matt = {name: material | {"specular": 0, "metallic": 0} for name, material in PALETTE.items()}
+    made = picture(plate(straight, materials=matt, lights=[sun(1, 0.45, -0.9)]), method="area")
     assert (made.aovs["method"][made.aovs["method"] != 0] == AREA).all()
     assert made.aovs["error"].max() < 1e-6
 
@@ -67,6 +68,18 @@ def test_far_away_it_is_the_mean(plate: Plate, picture: Shot) -> None:
                                                                                 "step": [0, 0.2]})]  # fmt: skip
     camera = {"origin": [0.1, -6, 8], "target": [0, 0, 0], "fov": 14, "resolution": [6, 4]}
     near(plate(grooves, camera=camera), picture, samples=16 * SAMPLES)
+
+
+def test_a_lamp_next_to_wide_footprints(plate: Plate, picture: Shot) -> None:
+    """Its light changes along a facet that runs through a footprint, and is integrated."""
+    lamp = {"type": "point", "position": [0.1, 0.05, 0.8], "intensity": [1, 1, 1]}
+    camera = {"origin": [0.1, -6, 8], "target": [0, 0, 0], "fov": 5, "resolution": [3, 2]}
+    scene = plate([family(V, 0.2, 10)], camera=camera, lights=[lamp])
+    exact, mine = picture(scene, method="csg", samples=65536).radiance, picture(scene, method="area")
+    assert (mine.aovs["method"] == AREA).all()
+    white = 1.0 / np.pi / 0.8**2
+    assert np.abs(mine.radiance - exact).max() < 3e-4 * white
+    assert np.abs(mine.radiance - exact).max() < 2.0 * mine.aovs["error"].max() * white
 
 
 @pytest.mark.parametrize("low", [1.0, 0.999999, 1.000001])

@@ -1,0 +1,113 @@
+"""The colour of a part of a face: what it sends to the eye on the mean."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from renderer.geometry.faces import Faces
+from renderer.geometry.query import Nearby
+from renderer.geometry.sight import Seen, colour_at
+from renderer.geometry.view import View, on_plane
+from renderer.kernel import leaf
+from renderer.shading import to_world
+from renderer.tables import DIRECTIONAL, Floats, Lighting, Pattern
+
+EVEN = 0.5  # one colour for all of a part loses f'' h^2 / 24, about a tenth of this part of the tolerance
+
+
+@leaf
+def turns(frame: np.void, view: View, lights: NDArray[np.void], turn: Floats) -> float:
+    """Write by what angle, radians, the ways to each light and to the eye together turn along a footprint;
+    the last is the way to the eye alone. Gives the footprint's length, pattern units."""
+    a, b = on_plane(view, 0.0, 0.0), on_plane(view, 1.0, 1.0)
+    c, d = on_plane(view, 1.0, 0.0), on_plane(view, 0.0, 1.0)
+    one, two = to_world(frame, a[0], a[1], 0.0), to_world(frame, b[0], b[1], 0.0)
+    other, last = to_world(frame, c[0], c[1], 0.0), to_world(frame, d[0], d[1], 0.0)
+    long = max(apart(one, two), apart(other, last))
+    middle = to_world(frame, view.p, view.q, 0.0)
+    eye = long / apart(middle, to_world(frame, frame.eye[0], frame.eye[1], frame.eye[2]))
+    turn[len(lights)] = eye
+    for l in range(len(lights)):
+        v = lights[l].vector
+        turn[l] = eye
+        if lights[l].kind != DIRECTIONAL:
+            turn[l] += long / max(apart(middle, (v[0], v[1], v[2])), 1e-300)
+    return max(math.hypot(b[0] - a[0], b[1] - a[1]), math.hypot(d[0] - c[0], d[1] - c[1]))
+
+
+@leaf
+def apart(a: tuple[float, float, float], b: tuple[float, float, float]) -> float:
+    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
+
+
+@leaf
+def sharpness(material: np.void) -> float:
+    """How much faster than a matt surface's the light that this material sends turns with direction: of that of a white
+    one, per radian squared. GGX's peak is 1 / (4 alpha^2) of it and alpha wide."""
+    if material.metallic == 0.0 and material.f90 == 0.0:
+        return 1.0
+    square = material.alpha * material.alpha
+    return max(1.0, 0.25 / square) / square if square > 0.0 else 1.0
+
+
+@leaf
+def colour_over(
+    f: int, light: int, part: Floats, corners: int, total: float, even: float, footprint: np.void, pattern: Pattern,
+    frame: np.void, lighting: Lighting, material: np.void, albedo: Floats, bent: bool, found: Nearby, faces: Faces,
+    seen: Seen,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """The radiance that a part of face f sends to the eye, times the part's share `total` of the footprint, and about
+    how wrong it is, mean of the channels: of one light; of sky and glow.
+
+    part: (corners, 2) a convex polygon of the footprint's square, anticlockwise. One place stands for parts no longer
+    than `even`. Else each triangle about the middle is integrated from the middles of its edges, exactly for quadratic
+    functions. What they differ from the middle's colour, in parts of it, is about how wrong they are in parts of that.
+    """
+    mx, my = centroid(part, corners, total)
+    long = 0.0
+    for j in range(corners):
+        long = max(long, abs(part[j, 0] - mx), abs(part[j, 1] - my))
+    last = corners - 1
+    before = doubled(part, last, 0, mx, my)
+    red = green = blue = one = 0.0
+    for k in range(1 if 2.0 * long <= even else 1 + 2 * corners):
+        x, y, share = mx, my, total
+        if k > 0:
+            j = (k - 1) >> 1
+            i = j + 1 if j < last else 0
+            after = doubled(part, j, i, mx, my)
+            if k & 1:
+                x, y, share = 0.5 * (mx + part[j, 0]), 0.5 * (my + part[j, 1]), (before + after) / 6.0
+            else:
+                x, y, share = 0.5 * (part[j, 0] + part[i, 0]), 0.5 * (part[j, 1] + part[i, 1]), after / 6.0
+                before = after
+        x, y = footprint.x + footprint.size * x, footprint.y + footprint.size * y
+        r, g, b = colour_at(f, light, x, y, pattern, frame, lighting, material, albedo, bent, found, faces, seen)
+        if k == 1:
+            one = red + green + blue
+            red = green = blue = 0.0
+        red, green, blue = red + share * r, green + share * g, blue + share * b
+    all_of = red + green + blue
+    off = (all_of - one) ** 2 / (3.0 * max(all_of, one)) if 2.0 * long > even and all_of != one else 0.0
+    return red, green, blue, off
+
+
+@leaf
+def centroid(part: Floats, corners: int, total: float) -> tuple[float, float]:
+    """Of a polygon with this area; a corner where it has next to none."""
+    x0, y0 = part[0, 0], part[0, 1]
+    x = y = 0.0
+    for j in range(2, corners):
+        ax, ay, bx, by = part[j - 1, 0] - x0, part[j - 1, 1] - y0, part[j, 0] - x0, part[j, 1] - y0
+        twice = ax * by - bx * ay
+        x, y = x + twice * (ax + bx), y + twice * (ay + by)
+    return (x0 + x / (6.0 * total), y0 + y / (6.0 * total)) if total > 0.0 else (x0, y0)
+
+
+@leaf
+def doubled(part: Floats, j: int, i: int, x: float, y: float) -> float:
+    """Twice the area of the triangle of corners j and i with (x, y)."""
+    return (part[j, 0] - x) * (part[i, 1] - y) - (part[i, 0] - x) * (part[j, 1] - y)
