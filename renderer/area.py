@@ -44,7 +44,7 @@ from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.shading import are_distant, to_world, white
 from renderer.tables import AREA, NOT_MINE, Camera, Floats, Lighting, Pattern
 
-PARTS = 512  # polygons that are left of one face
+PARTS = 2048  # polygons that are left of one face
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 0.1  # in tolerances: the shares of a footprint sum to one within this, or it is left to another method
 CHORDED = 2.0  # ... where chords stand for arcs and steps for scales; shares are divided by their sum

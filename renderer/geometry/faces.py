@@ -22,9 +22,9 @@ from renderer.geometry.strips import Strips
 from renderer.kernel import callee, leaf
 from renderer.tables import Floats
 
-FACES = 4096
-BESIDE = 64  # strips along one line
-STOPS = 2048  # places along one line where something begins or ends
+FACES = 16384
+BESIDE = 256  # strips along one line
+STOPS = 8192  # places along one line where something begins or ends
 FLAT_PLANE = -1  # the tag of the base plane's faces
 
 

@@ -19,10 +19,10 @@ from renderer.geometry.view import GRAZING, View, on_plane, slope_at, view_of
 from renderer.kernel import fixed, leaf
 from renderer.tables import FOOTPRINT, Camera, Floats, Pattern
 
-CAPACITY = fixed(512)  # pieces near a domain
+CAPACITY = fixed(2048)  # pieces near a domain
 CHORD = 4.0  # how far chords leave arcs, in widths of the footprint and tolerances; the error is about a fifth of it
 BLOCKS = (8, 2, 0)  # the faces are made for squares of so many pixels, aligned on the screen; 0: for the footprint
-FEW = (16, 48, 512)  # while no more pieces than this are near
+FEW = (16, 48, 2048)  # while no more pieces than this are near
 
 
 class Local(NamedTuple):

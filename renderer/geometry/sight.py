@@ -22,7 +22,7 @@ from renderer.kernel import leaf
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
 from renderer.tables import SCALE_CONSTANT, Camera, Floats, Lighting, Pattern
 
-HALVES = 65536  # half-planes of what hides or shades
+HALVES = 262144  # half-planes of what hides or shades
 
 
 class Seen(NamedTuple):

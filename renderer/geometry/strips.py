@@ -20,7 +20,7 @@ from renderer.geometry.spans import BODY, CAP_FINISH, CAP_START, END, SIDE, TAIL
 from renderer.kernel import callee, leaf
 from renderer.tables import CORNER, FLAT, PROFILE, SCALE_CONSTANT, SCALE_SINE, Floats, Pattern
 
-STRIPS, WALLS, CHUNKS = 1024, 1024, 512  # room for those of one surface
+STRIPS, WALLS, CHUNKS = 4096, 4096, 512  # room for those of one surface
 BEND = 0.15  # a chord turns by no more, radians
 
 CHUNK = np.dtype(
