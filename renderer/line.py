@@ -11,7 +11,7 @@ Two changes to the papers, which `line` makes and `segment` does not (DESIGN 2.1
 Where nothing stands above the plane, grooves do not mask each other, and each is a cross-section of its own; those
 that overlap share one.
 
-A profile that overhangs is no cross-section for this: `auto` leaves its grooves to sampling, and as methods of the
+A profile that overhangs is no cross-section for this: `auto` leaves its grooves to `area`, and as methods of the
 whole image `line` and `segment` leave them out, so that the plane is seen there.
 """
 

@@ -168,6 +168,40 @@ def enclose(faces: Faces, at: int) -> None:
 
 
 @leaf
+def stand(
+    faces: Faces, x0: float, y0: float, x1: float, y1: float, a: float, b: float,
+    low_a: float, low_b: float, high_a: float, high_b: float, to_right: bool, found: int, facet: int, part: int,
+) -> bool:  # fmt: skip
+    """Add a wall that stands on the line from (x0, y0), 0, to (x1, y1), 1, between a and b, from the one heights there
+    to the others. False where there is no room.
+
+    to_right: whether its outside is to the right of the line.
+    """
+    at = faces.made[0]
+    if at == FACES:
+        return False
+    long = math.hypot(x1 - x0, y1 - y0)
+    dx, dy = (x1 - x0) / long, (y1 - y0) / long
+    ax, ay, bx, by = x0 + a * (x1 - x0), y0 + a * (y1 - y0), x0 + b * (x1 - x0), y0 + b * (y1 - y0)
+    if not to_right:
+        ax, ay, bx, by = bx, by, ax, ay
+        low_a, low_b, high_a, high_b = low_b, low_a, high_b, high_a
+    corner = faces.corner[at]
+    corner[0, 0], corner[0, 1], corner[0, 2] = ax, ay, low_a
+    corner[1, 0], corner[1, 1], corner[1, 2] = bx, by, low_b
+    corner[2, 0], corner[2, 1], corner[2, 2] = bx, by, high_b
+    corner[3, 0], corner[3, 1], corner[3, 2] = ax, ay, high_a
+    faces.corners[at] = 4
+    sign = 1.0 if to_right else -1.0
+    faces.plane[at, 0], faces.plane[at, 1], faces.plane[at, 2] = sign * dy, -sign * dx, 0.0
+    faces.plane[at, 3] = -sign * (dy * x0 - dx * y0)
+    faces.tag[at, 0], faces.tag[at, 1], faces.tag[at, 2], faces.tag[at, 3] = found, facet, part, 1
+    enclose(faces, at)
+    faces.made[0] = at + 1
+    return True
+
+
+@leaf
 def within(
     polygon: Floats, count: int, x0: float, y0: float, x1: float, y1: float, near: float
 ) -> tuple[float, float, int]:  # fmt: skip
@@ -285,26 +319,9 @@ def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces)
             rb = faces.beside[right, 2] + b * (faces.beside[right, 3] - faces.beside[right, 2])
         if abs(la - ra) <= tie and abs(lb - rb) <= tie:
             continue
-        at = faces.made[0]
-        if at == FACES:
+        if not stand(
+            faces, x0, y0, x1, y1, a, b, min(la, ra), min(lb, rb), max(la, ra), max(lb, rb), la + lb > ra + rb,
+            strips.wall_tag[wall, 0], strips.wall_tag[wall, 1], strips.wall_tag[wall, 2],
+        ):  # fmt: skip
             return False
-        to_right = la + lb > ra + rb
-        ax, ay, bx, by = x0 + a * (x1 - x0), y0 + a * (y1 - y0), x0 + b * (x1 - x0), y0 + b * (y1 - y0)
-        if not to_right:
-            ax, ay, bx, by = bx, by, ax, ay
-            la, lb, ra, rb = rb, ra, lb, la
-        corner = faces.corner[at]
-        corner[0, 0], corner[0, 1], corner[0, 2] = ax, ay, min(la, ra)
-        corner[1, 0], corner[1, 1], corner[1, 2] = bx, by, min(lb, rb)
-        corner[2, 0], corner[2, 1], corner[2, 2] = bx, by, max(lb, rb)
-        corner[3, 0], corner[3, 1], corner[3, 2] = ax, ay, max(la, ra)
-        faces.corners[at] = 4
-        sign = 1.0 if to_right else -1.0
-        faces.plane[at, 0], faces.plane[at, 1], faces.plane[at, 2] = sign * dy, -sign * dx, 0.0
-        faces.plane[at, 3] = -sign * (dy * x0 - dx * y0)
-        for i in range(3):
-            faces.tag[at, i] = strips.wall_tag[wall, i]
-        faces.tag[at, 3] = 1
-        enclose(faces, at)
-        faces.made[0] = at + 1
     return True

@@ -11,10 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.cells import Cells, carve, cells_of
 from renderer.geometry.domain import Domain, aim, domain_of, settle, spread
 from renderer.geometry.faces import Faces, envelope, faces_of
 from renderer.geometry.query import Nearby, find, nearby
-from renderer.geometry.strips import Strips, divide, lay, strips_of
+from renderer.geometry.strips import Strips, divide, lay, overhangs, strips_of
 from renderer.geometry.view import GRAZING, View, on_plane, slope_at, view_of
 from renderer.kernel import fixed, leaf
 from renderer.tables import FOOTPRINT, Camera, Floats, Pattern
@@ -31,6 +32,7 @@ class Local(NamedTuple):
     found: Nearby
     domain: Domain
     strips: Strips
+    cells: Cells
     faces: Faces
     square: NDArray[np.void]  # (1,) FOOTPRINT: what the faces are made for
     at: Floats  # (BLOCKS, 3) the block of each size last tried, in its sizes, and whether its faces are held: 1
@@ -39,7 +41,7 @@ class Local(NamedTuple):
 @leaf
 def local_of(pattern: Pattern) -> Local:
     return Local(
-        nearby(pattern, CAPACITY), domain_of(), strips_of(), faces_of(), np.zeros(1, FOOTPRINT),
+        nearby(pattern, CAPACITY), domain_of(), strips_of(), cells_of(), faces_of(), np.zeros(1, FOOTPRINT),
         np.full((len(BLOCKS), 3), math.inf),
     )  # fmt: skip
 
@@ -128,9 +130,9 @@ def make(pattern: Pattern, size: float, few: int, tolerance: float, most: int, l
     rim = domain.slab
     count = find(pattern, found, rim[0, 0] - m, rim[1, 0] - m, rim[0, 1] + m, rim[1, 1] + m, few)
     room = count >= 0
-    for i in range(max(count, 0)):  # what overhangs is no height field
-        profile = pattern.grooves[pattern.pieces[found.piece[i]].groove].profile
-        room = room and (len(pattern.part_first) == 0 or pattern.part_first[profile] == pattern.part_first[profile + 1])
+    undercut = False
+    for i in range(max(count, 0)):
+        undercut = undercut or overhangs(pattern, pattern.grooves[pattern.pieces[found.piece[i]].groove].profile)
     strips.made[0] = strips.made[1] = strips.made[2] = 0
     for i in range(max(count, 0)):
         if not room:
@@ -141,4 +143,6 @@ def make(pattern: Pattern, size: float, few: int, tolerance: float, most: int, l
         for j in range(chunks):
             room = room and strips.made[0] <= most
             room = room and lay(pattern, found.piece[i], i, strips.chunks[j], domain, stepped, strips)
+    if room and undercut:
+        return carve(pattern, found, strips, domain, local.cells, faces)
     return room and envelope(strips, domain, pattern.height + pattern.depth, faces)

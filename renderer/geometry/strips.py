@@ -1,5 +1,8 @@
 """Grooves seen from above: convex strips of the plane, one a facet, each with a height linear in (p, q).
 
+Of a profile that overhangs there is one for each of its trapezoids, with two heights: what lies between them is removed
+or added.
+
 A straight groove of a constant or linear scale is made of such strips exactly, its mitres and the caps of its
 `profile` ends included. Arcs are followed by chords, and other scales by steps, that leave them by no more than a
 given distance.
@@ -46,12 +49,15 @@ class Strips(NamedTuple):
     polygon: Floats  # (STRIPS, CORNERS, 2)
     corners: Counts  # (STRIPS,) of each
     box: Floats  # (STRIPS, 4) p0, q0, p1, q1
-    height: Floats  # (STRIPS, 3) w = h0 p + h1 q + h2
-    tag: Counts  # (STRIPS, 5) place of the piece in `Nearby`, facet, part, rank, whether the facet is internal
+    height: Floats  # (STRIPS, 3) w = h0 p + h1 q + h2; of a trapezoid: its lower side
+    roof: Floats  # (STRIPS, 3) the upper side of a trapezoid
+    tag: Counts  # (STRIPS, 6) place of the piece in `Nearby`, facet, part, rank, whether the facet is internal; of a
+    # trapezoid, whether it removes, and its row of `Pattern.parts` + 1; else 0
     band: Floats  # (STRIPS, CORNERS, 2) what the strips cover together
     band_count: Counts  # (STRIPS,)
+    band_rank: Counts  # (STRIPS,)
     wall: Floats  # (WALLS, 4) p0, q0, p1, q1
-    wall_tag: Counts  # (WALLS, 3) as `tag`: piece, facet or SIDE or END, part
+    wall_tag: Counts  # (WALLS, 3) as `tag`: piece, facet or SIDE or END, part; of what overhangs the profile's point
     one: Floats  # (CORNERS, 2) for clipping
     two: Floats
     sides: Floats  # (CORNERS, 3) half-planes
@@ -62,8 +68,8 @@ class Strips(NamedTuple):
 def strips_of() -> Strips:
     return Strips(
         np.zeros(3, np.int64), np.zeros(CHUNKS, CHUNK), np.empty((STRIPS, CORNERS, 2)), np.empty(STRIPS, np.int64),
-        np.empty((STRIPS, 4)), np.empty((STRIPS, 3)), np.empty((STRIPS, 5), np.int64),
-        np.empty((STRIPS, CORNERS, 2)), np.empty(STRIPS, np.int64), np.empty((WALLS, 4)),
+        np.empty((STRIPS, 4)), np.empty((STRIPS, 3)), np.empty((STRIPS, 3)), np.empty((STRIPS, 6), np.int64),
+        np.empty((STRIPS, CORNERS, 2)), np.empty(STRIPS, np.int64), np.empty(STRIPS, np.int64), np.empty((WALLS, 4)),
         np.empty((WALLS, 3), np.int64), np.empty((CORNERS, 2)), np.empty((CORNERS, 2)), np.empty((CORNERS, 3)),
         np.empty((2, 2, 3)),
     )  # fmt: skip
@@ -356,7 +362,7 @@ def tag_strip(strips: Strips, at: int, corners: int, found: int, facet: int, par
     for k in range(corners):
         box[0], box[1] = min(box[0], polygon[k, 0]), min(box[1], polygon[k, 1])
         box[2], box[3] = max(box[2], polygon[k, 0]), max(box[3], polygon[k, 1])
-    tag[0], tag[1], tag[2], tag[3], tag[4] = found, facet, part, rank, 1 if inner else 0
+    tag[0], tag[1], tag[2], tag[3], tag[4], tag[5] = found, facet, part, rank, 1 if inner else 0, 0
 
 
 @leaf
@@ -380,6 +386,69 @@ def triangle(chunk: np.void, a: Floats, b: Floats, c: Floats, domain: Domain, st
         polygon[0, k], polygon[1, k], polygon[2, k] = a[k], b[k], c[k]
     count = within(polygon, 3, domain, strips)
     return clipped(polygon, count, chunk.planes, 0, chunk.count, strips.two) if count else 0
+
+
+@leaf
+def overhangs(pattern: Pattern, profile: int) -> bool:
+    """Whether a profile is no height field."""
+    return len(pattern.part_first) > 0 and pattern.part_first[profile] < pattern.part_first[profile + 1]
+
+
+@callee
+def lay_parts(
+    pattern: Pattern, item: int, found: int, chunk: np.void, count: int, domain: Domain, strips: Strips
+) -> bool:  # fmt: skip
+    """Add the strips of a chunk of a groove that overhangs. False where there is no room.
+
+    count: the corners of its band, the last of `strips.band`.
+    """
+    groove = pattern.grooves[pattern.pieces[item].groove]
+    bx, by = -chunk.ty, chunk.tx
+    bc, sc = -(bx * chunk.x + by * chunk.y), -(chunk.tx * chunk.x + chunk.ty * chunk.y)
+    f, g = chunk.f, chunk.g
+    base, sides = strips.band[strips.made[1] - 1], strips.sides
+    lower, upper = strips.rims[0], strips.rims[1]
+    for row in range(pattern.part_first[groove.profile], pattern.part_first[groove.profile + 1]):
+        part = pattern.parts[row]
+        b0, b1 = part.b0, part.b1
+        if (chunk.half > 0 and b1 <= 0.0) or (chunk.half < 0 and b0 >= 0.0):
+            continue
+        made = strips.made[0]
+        if made + 2 > STRIPS:
+            return False
+        polygon = strips.polygon[made]
+        for k in range(count):
+            polygon[k, 0], polygon[k, 1] = base[k, 0], base[k, 1]
+        for k in range(2):
+            beta, sign = (b0, 1.0) if k == 0 else (b1, -1.0)
+            sides[k, 0], sides[k, 1] = sign * (bx - g * beta * chunk.tx), sign * (by - g * beta * chunk.ty)
+            sides[k, 2] = sign * (bc - g * beta * sc - f * beta)
+        corners = 0 if chunk.wedge > 0.0 else clipped(polygon, count, sides, 0, 2, strips.two)
+        for k in range(2 if chunk.wedge > 0.0 else 1):
+            for side in range(1, -1, -1):
+                w0, w1 = (part.low0, part.low1) if side == 0 else (part.high0, part.high1)
+                if not (w0 < math.inf and w1 < math.inf):
+                    continue
+                slope = (w1 - w0) / (b1 - b0)
+                height = strips.height[made]
+                if chunk.wedge > 0.0:
+                    rim(chunk, b0, w0, slope, lower)
+                    rim(chunk, b1, w1, slope, upper)
+                    last = lower[1] if k == 0 else upper[1]
+                    corners = triangle(chunk, lower[0], last, upper[1 - k], domain, strips, made)
+                else:
+                    level = w0 - slope * b0
+                    height[0], height[1] = slope * bx + g * level * chunk.tx, slope * by + g * level * chunk.ty
+                    height[2] = slope * bc + g * level * sc + f * level
+                if side == 1:
+                    for m in range(3):
+                        strips.roof[made, m] = height[m]
+            if corners:
+                tag_strip(strips, made, corners, found, -1, chunk.part, groove.priority, part.removes == 1)
+                strips.tag[made, 5] = row + 1
+                made += 1
+        strips.made[0] = made
+    return True
 
 
 @leaf
@@ -427,10 +496,15 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, domain: Domain,
         count = clipped(base, count, sides, 0, 2, spare)
     if count == 0:
         return True
-    strips.band_count[bands] = count
+    strips.band_count[bands], strips.band_rank[bands] = count, groove.priority
     strips.made[1] = bands + 1
 
-    for i in range(profile.count - 1):
+    undercut = overhangs(pattern, groove.profile)
+    if undercut:
+        if not lay_parts(pattern, item, found, chunk, count, domain, strips):
+            return False
+        made = strips.made[0]
+    for i in range(0 if undercut else profile.count - 1):
         b0, w0, b1, w1 = points[first + i, 0], points[first + i, 1], points[first + i + 1, 0], points[first + i + 1, 1]
         if b1 <= b0 or (chunk.half > 0 and b1 <= 0.0) or (chunk.half < 0 and b0 >= 0.0):
             continue
@@ -486,7 +560,7 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, domain: Domain,
             last += 1
         after = profile.inner_first <= last < profile.inner_last
         edge = j == 0 or last == profile.count - 1
-        if not upright and not (stepped and (edge or before != after)):
+        if not upright and not (stepped and (edge or before != after or undercut)):
             continue
         if chunk.wedge > 0.0:
             rim(chunk, b, 0.0, 0.0, lower)
@@ -497,7 +571,8 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, domain: Domain,
                 lower[k, 0], lower[k, 1] = chunk.x + along * chunk.tx + off * bx, chunk.y + along * chunk.ty + off * by
         walls = keep_wall(
             strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, chunk.half, bx, by, bc, domain,
-            lower[0, 0], lower[0, 1], lower[1, 0], lower[1, 1], near, found, j if upright else SIDE, chunk.part,
+            lower[0, 0], lower[0, 1], lower[1, 0], lower[1, 1], near, found,
+            j if upright or undercut else SIDE, chunk.part,
         )  # fmt: skip
     for end in range(2):
         if (chunk.start if end == 0 else chunk.finish) == 0:

@@ -46,7 +46,7 @@ PROFILES = {
     "dovetail": DOVETAIL, "lips": LIPS, "mushroom": MUSHROOM, "island": ISLAND, "keyhole": KEYHOLE,
     "one-sided": ONE_SIDED,
 }  # fmt: skip
-METHODS = ("csg", "geometry")
+METHODS = ("csg", "geometry", "area")
 
 
 def profile(points: Points) -> Json:
@@ -208,10 +208,10 @@ def test_a_height_field_is_the_same_cut_into_parts(plate: Plate, radiance: Radia
 
 
 @pytest.mark.parametrize("name", PROFILES)
-def test_auto_leaves_them_to_sampling(plate: Plate, picture: Callable[..., Any], name: str) -> None:
+def test_auto_takes_their_areas(plate: Plate, picture: Callable[..., Any], name: str) -> None:
     data = plate([through(PROFILES[name])])
     one, other = picture(data, method="auto", samples=64), picture(data, method="csg", samples=64)
-    assert set(one.shares) == {"base", "csg"}
+    assert set(one.shares) == {"base", "area"}
     assert np.abs(one.radiance - other.radiance).mean() < 2e-3
 
 
