@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import functools
 import os
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
@@ -343,13 +345,20 @@ def warm_up(*, lines: bool = False, geometry: bool = False, textures: bool = Fal
     """
     begin = time.perf_counter()
     if "analytic" not in _warm:
-        _try("line", {"type": "sphere", "radius": 1})
-        _try("area", {"type": "sphere", "radius": 1})
-        _try("csg", {"type": "sphere", "radius": 1})
+        beside = None
+        if not kernels_compiled() and (os.cpu_count() or 1) > 1:  # `area` takes as long as all others
+            program = "from renderer import pipeline; pipeline.compile_analytic('line', 'csg')"
+            beside = subprocess.Popen(
+                [sys.executable, "-c", program], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            )
+        compile_analytic("area")
+        if beside is not None:
+            beside.wait()
+        compile_analytic("line", "csg")
         _READY.touch()
         _warm.add("analytic")
     if lines and "lines" not in _warm:
-        _try("lines", {"type": "sphere", "radius": 1})
+        compile_analytic("lines")
         _warm.add("lines")
     if geometry and "geometry" not in _warm:
         _try("geometry", {"type": "rectangle", "size": [2, 2]})
@@ -363,6 +372,12 @@ def warm_up(*, lines: bool = False, geometry: bool = False, textures: bool = Fal
         _try("line", _MESH)
         _warm.add("meshes")
     return time.perf_counter() - begin
+
+
+def compile_analytic(*methods: str) -> None:
+    """Compile the kernels of these methods, or load them."""
+    for method in methods:
+        _try(method, {"type": "sphere", "radius": 1})
 
 
 _MESH: dict[str, object] = {"type": "mesh", "file": "triangle.obj"}
