@@ -368,8 +368,8 @@ def raise_walls(
             if max(y0, y1) < box[1] - near or min(y0, y1) > box[3] + near:
                 continue
         low, high, sides = within(polygon, count, x0, y0, x1, y1, near)
-        if (high - low) * long <= near:
-            continue
+        if (high - low) * long <= near or area(polygon, count) <= 1e-15 * size * size:
+            continue  # a sliver's heights and sides are rounding
         if n == BESIDE or levels + 2 > LEVELS or stops + 2 > STOPS:
             return False
         beside = cells.beside[n]
