@@ -46,8 +46,8 @@ PIECE = np.dtype(
     [
         ("x", "f8"), ("y", "f8"), ("tx", "f8"), ("ty", "f8"), ("length", "f8"), ("curvature", "f8"),  # as SEGMENT
         ("t0", "f4"), ("t1", "f4"),  # path parameter (0..1) at the start and at the finish
-        ("start_mitre", "f4"),  # tan of half the turn at a CORNER, positive for a left turn: the piece begins
-        ("finish_mitre", "f4"),  # at s = mitre * b and ends at s = length - mitre * b; 0 for other ends
+        ("start_mitre", "f8"),  # tan of half the turn at a CORNER, positive for a left turn: the piece begins
+        ("finish_mitre", "f8"),  # at s = mitre * b and ends at s = length - mitre * b; 0 for other ends
         ("size", "f4"),  # scale of the whole cross-section given by the placement (scatter); 1 otherwise
         ("half", "f4"),  # no |b| of the cross-section is larger anywhere along the piece, pattern units
         ("groove", "i4"),  # row of the GROOVE table

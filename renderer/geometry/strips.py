@@ -34,8 +34,8 @@ CHUNK = np.dtype(
         ("radius", "f8"), ("wedge", "f8"),  # arcs of changing scale: the centre's b, tan of half the angle
         ("half", "i8"),  # 1: where b >= 0 alone, -1: b <= 0, 0: both
         ("part", "i8"),
-        ("start", "i8"), ("finish", "i8"),  # 1: it may end in a wall there, square
-        ("ends", "f8", (2, 5)),  # where: a point of the axis, the unit vector across, the scale
+        ("start", "i8"), ("finish", "i8"),  # 1: it may end in a wall there
+        ("ends", "f8", (2, 5)),  # where: a point of the axis, the way of a unit of b, the scale
     ]
 )  # fmt: skip
 """A stretch of a groove, or a cap, that is straight and has a linear scale."""
@@ -97,7 +97,7 @@ def begin(chunk: np.void, x: float, y: float, tx: float, ty: float, f: float, g:
 
 @leaf
 def end_at(chunk: np.void, end: int, x: float, y: float, tx: float, ty: float, f: float) -> None:
-    """Let a chunk end, at its start (0) or finish (1), in a wall across the tangent."""
+    """Let a chunk end, at its start (0) or finish (1), in a wall across (tx, ty)."""
     if end == 0:
         chunk.start = 1
     else:
@@ -137,6 +137,9 @@ def divide(
     capped = right > 0.0 and piece.closed == 0
     ratio = profile.right / -profile.left if profile.left < 0.0 else 0.0
     left = -profile.left / profile.right if profile.left < 0.0 and capped else 0.0
+    # Cross-sections of two pieces differ along their mitre where they are bent or their scale changes.
+    changing = groove.scale_kind != SCALE_CONSTANT
+    wide = 1.01 * piece.half / max(profile.right, -profile.left, 1e-300)
     n = 0
     if piece.curvature == 0.0:
         x, y, tx, ty = piece.x + dx, piece.y + dy, piece.tx, piece.ty
@@ -168,12 +171,17 @@ def divide(
                 a = b = 0.0
                 if piece.start_end == CORNER:
                     a = piece.start_mitre
+                    if changing:
+                        end_at(chunk, 0, x, y, tx + a * ty, ty - a * tx, wide)
                 elif piece.start_end == PROFILE and capped:
                     a = -1.0 if side == 0 else ratio
                 elif piece.start_end == FLAT or piece.start_end == PROFILE:
                     end_at(chunk, 0, x, y, tx, ty, f0 - g * s)
                 if piece.finish_end == CORNER:
                     b = -piece.finish_mitre
+                    if changing:
+                        along = piece.length
+                        end_at(chunk, 1, x + along * tx, y + along * ty, tx + b * ty, ty - b * tx, wide)
                 elif piece.finish_end == PROFILE and capped:
                     b = 1.0 if side == 0 else -ratio
                 elif piece.finish_end == FLAT or piece.finish_end == PROFILE:
@@ -242,10 +250,15 @@ def divide(
                     bound(chunk, ux, uy, -ux * cx - uy * cy)
                     ux, uy = tangent_at(piece, until)
                     bound(chunk, -ux, -uy, ux * cx + uy * cy)
+                    beyond = False
                     if piece.closed == 0:
                         for end in range(2):
                             e = 0.0 if end == 0 else piece.length
-                            if abs(0.5 * (s + until) - e) > 0.5 * math.pi * size:
+                            # the line across an end meets the ring once more: there it does not count
+                            lean = math.atan(piece.start_mitre) if end == 0 else -math.atan(piece.finish_mitre)
+                            angle = (0.5 * (s + until) - e) / size + math.copysign(lean, lean * radius)
+                            if abs(angle) > 0.5 * math.pi:
+                                beyond = beyond or (angle < 0.0) == (end == 0)
                                 continue
                             ux, uy = tangent_at(piece, e)
                             ex, ey = point_at(piece, e)
@@ -257,8 +270,12 @@ def divide(
                             bound(chunk, vx, vy, -vx * ex - vy * ey)
                             ends = piece.start_end if end == 0 else piece.finish_end
                             near = min(abs(s0 - e), abs(s1 - e)) < 0.5 * step
-                            if near and (ends == FLAT or (ends == PROFILE and not capped)):
+                            if ends == CORNER:
+                                end_at(chunk, end, ex, ey, vx if end == 0 else -vx, vy if end == 0 else -vy, wide)
+                            elif near and (ends == FLAT or (ends == PROFILE and not capped)):
                                 end_at(chunk, end, ex, ey, ux, uy, f0 if end == 0 else f1)
+                    if beyond:
+                        n -= 1
                     s = until
     if not capped:
         return n

@@ -22,6 +22,7 @@ from .test_overhang import PROFILES
 Plate = Callable[..., Json]
 Shot = Callable[..., pipeline.Picture]
 SAMPLES = 1024
+TRAPEZOID = [[-0.15, 0], [-0.08, -0.15], [0.08, -0.15], [0.15, 0]]
 V = [[-0.1, 0.0], [0.0, -0.1], [0.1, 0.0]]
 
 
@@ -81,6 +82,22 @@ def test_a_lamp_next_to_wide_footprints(plate: Plate, picture: Shot) -> None:
     white = 1.0 / np.pi / 0.8**2
     assert np.abs(mine.radiance - exact).max() < 3e-4 * white
     assert np.abs(mine.radiance - exact).max() < 2.0 * mine.aovs["error"].max() * white
+
+
+SHARP = {
+    "line and arc": {"type": "svg", "d": "M 0.3 0.3 L 1 1 A 0.5 0.5 0 0 1 1.6 0.5"},
+    "arcs": {"type": "svg", "d": "M 0.3 1 A 0.6 0.6 0 0 1 1 1 A 0.3 0.3 0 0 1 1.6 1"},
+    "lines of changing scale": {"type": "polyline", "points": [[1.9, 1], [1, 1], [1.85, 1.31]]},
+}
+
+
+@pytest.mark.parametrize("name", SHARP)
+def test_sharp_mitres(name: str, plate: Plate, picture: Shot) -> None:
+    """Where the cross-sections of two pieces differ along their mitre a wall stands; arcs end at it."""
+    groove = {"path": SHARP[name], "profile": {"type": "polyline", "points": TRAPEZOID}}
+    if "scale" in name:
+        groove["scale"] = {"type": "sine", "amplitude": 0.4, "periods": 2}
+    near(plate([groove], camera={"resolution": [64, 48]}), picture, 0.97)
 
 
 @pytest.mark.parametrize("low", [1.0, 0.999999, 1.000001])
