@@ -48,6 +48,7 @@ PARTS = 2048  # polygons that are left of one face
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 0.1  # in tolerances: the shares of a footprint sum to one within this, or it is left to another method
 CHORDED = 2.0  # ... where chords stand for arcs and steps for scales; shares are divided by their sum
+SHARE = 0.1  # of the tolerance, that the colour of one part may use up
 BENT = 0.5  # the error where chords stand for arcs, in tolerances
 
 
@@ -169,6 +170,7 @@ def area_sampling(
         red = green = blue = whole = off = 0.0
         view = view_of(footprint, frame, camera)
         long = turns(frame, view, lights, turn)
+        bright = white(lighting, to_world(frame, view.p, view.q, 0.0))
         cost = faces.made[0] + (local.strips.made[0] * footprint.size / square.size) ** 2
         room, chorded = True, False
         for f in range(faces.made[0]):
@@ -221,8 +223,8 @@ def area_sampling(
                         red, green, blue = red + total * tint[0], green + total * tint[1], blue + total * tint[2]
                         continue
                     r, g, b, unsure = colour_over(
-                        f, light, part, corners, total, even, footprint, pattern, frame, lighting, material, albedo,
-                        bent, found, faces, seen,
+                        f, light, part, corners, total, even, SHARE * tolerance * bright, footprint, pattern, frame,
+                        lighting, material, albedo, bent, found, faces, seen,
                     )  # fmt: skip
                     red, green, blue, off = red + r, green + g, blue + b, off + unsure
             if not room:
@@ -231,7 +233,7 @@ def area_sampling(
             continue
         error = abs(whole - 1.0) + (BENT * tolerance if chorded else 0.0)
         if off > 0.0:
-            off /= white(lighting, to_world(frame, view.p, view.q, 0.0))
+            off /= bright
             if not off <= tolerance:
                 continue
         method[index] = AREA
