@@ -20,7 +20,7 @@ from renderer.geometry.spans import NO, YES, events
 from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit, white
-from renderer.tables import CSG, Camera, Lighting, Pattern
+from renderer.tables import CSG, NOT_MINE, Camera, Lighting, Pattern
 
 SHARED = fixed(32)  # up to so many pieces are found once for all samples of a footprint
 LEVEL = 1e-6  # a light's slope to the plane is taken for at least this
@@ -33,7 +33,7 @@ SURE = 0.5  # how much of the tolerance the standard error may take
 
 @kernel
 def csg(
-    samples: int, tolerance: float, seed: int, pattern: Pattern, footprints: NDArray[np.void],
+    samples: int, tolerance: float, sparing: bool, seed: int, pattern: Pattern, footprints: NDArray[np.void],
     chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera, lighting: Lighting,
     materials: NDArray[np.void], slots: NDArray[np.int32], albedo: NDArray[np.float64],
     radiance: NDArray[np.float64], method: NDArray[np.uint8],
@@ -41,7 +41,8 @@ def csg(
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
     samples: at least so many a footprint, in a grid of strata, where the tolerance is 0; else as many as that asks for,
-    which is the error relative to a white surface in the same light. slots: rows of `materials` for the pattern's
+    which is the error relative to a white surface in the same light. sparing: NOT_MINE, where that is more than
+    MOST * MOST. slots: rows of `materials` for the pattern's
     facets, the object's own first.
     """
     owned = nearby(pattern, max(pattern.near, SHARED)), events(pattern)
@@ -184,8 +185,11 @@ def csg(
             error = math.sqrt(unlike / (2.0 * pairs) / taken)
             if error <= target or across >= MOST:
                 break
-            across = min(int(math.ceil(1.05 * across * (error / target) ** (2.0 / 3.0))), MOST)
-            down = across
+            across = int(math.ceil(1.05 * across * min((error / target) ** (2.0 / 3.0), float(MOST))))
+            if sparing and across > MOST:
+                method[index] = NOT_MINE
+                break
+            across = down = min(across, MOST)
         radiance[index, 3] = error / SURE
         radiance[index, 4] = float(looked) * max(shared, 1)
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / taken, green / taken, blue / taken

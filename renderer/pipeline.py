@@ -141,7 +141,7 @@ class Frame:
 
         start = time.perf_counter()
         if settings.method == "csg" and pattern is not BARE:
-            csg(settings.samples, 0.0, settings.seed, pattern, seen.footprints, chosen, *rest)
+            csg(settings.samples, 0.0, False, settings.seed, pattern, seen.footprints, chosen, *rest)
             return timed("csg", start)
         if isinstance(self.model, Textures) and pattern is not BARE:
             relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
@@ -165,9 +165,18 @@ class Frame:
                 area_sampling(settings.tolerance, most, flat, pattern, seen.footprints, ordered, *rest)
             timed("lines" if settings.method == "lines" else "area", start)
             left = left[method[left] == NOT_MINE]
+        if len(left) and settings.method == "auto":  # with as many strips as there is room for, if samples do not do
+            start = time.perf_counter()
+            csg(settings.samples, settings.tolerance, True, settings.seed, pattern, seen.footprints, left, *rest)
+            timed("csg", start)
+            left = in_blocks(seen.footprints, left[method[left] == NOT_MINE])
+            start = time.perf_counter()
+            area_sampling(settings.tolerance, STRIPS, int(row) in self.flat, pattern, seen.footprints, left, *rest)
+            timed("area", start)
+            left = left[method[left] == NOT_MINE]
         if len(left):
             start = time.perf_counter()
-            csg(settings.samples, settings.tolerance, settings.seed, pattern, seen.footprints, left, *rest)
+            csg(settings.samples, settings.tolerance, False, settings.seed, pattern, seen.footprints, left, *rest)
             timed("csg", start)
         return None
 
