@@ -271,7 +271,10 @@ def test_a_scratch_across_a_family_is_not_folded_away(plate: Plate, check: Check
     picture = pipeline.render(check(data), method="auto", threads=1, samples=64)
     scratched = np.abs(picture.radiance - plain.radiance).max(axis=2) > 0.0
     assert 0.01 < scratched.mean() < 0.3
-    assert (picture.aovs["method"] == plain.aovs["method"])[~scratched].all()
+    rows = np.pad(scratched.any(axis=1), 1)
+    apart = ~(rows[:-2] | rows[1:-1] | rows[2:])  # what is next to it may come to `area`, which sees the same
+    assert apart.sum() > 10
+    assert (picture.aovs["method"] == plain.aovs["method"])[apart].all()
 
 
 # --- the query ---
