@@ -5,7 +5,8 @@
 
 Takes about a quarter of an hour on two cores, nearly all for the references of `papers`, which writes docs/PAPERS.md,
 and of `special`, which keeps its own in bench/out.
-`stability` takes as long, is measured only where it is named, and writes docs/STABILITY.md's maps and tables.
+`stability` takes up to twice as long, is measured only where it is named, and writes the maps and tables of
+docs/STABILITY.md.
 """
 
 from __future__ import annotations

@@ -268,7 +268,7 @@ def test_a_scratch_across_a_family_is_not_folded_away(plate: Plate, check: Check
     data["patterns"]["cut"]["grooves"].append(
         {"path": {"type": "polyline", "points": [[0.5, 1.0], [1.5, 1.05]]}, "profile": scaled(V, 0.05)}
     )
-    picture = pipeline.render(check(data), method="auto", threads=1, samples=64)
+    picture = pipeline.render(check(data), method="auto", threads=1)
     scratched = np.abs(picture.radiance - plain.radiance).max(axis=2) > 0.0
     assert 0.01 < scratched.mean() < 0.3
     rows = np.pad(scratched.any(axis=1), 1)
