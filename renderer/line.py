@@ -8,6 +8,11 @@ Two changes to the papers, which `line` makes and `segment` does not (DESIGN 2.1
 - an interval's weight is the exact area of the pixel's square between its two lines, not its length on a segment that
   stands for the footprint (000, eq. 3).
 
+On a curved base the points lie lower the farther they are from the footprint's centre, by its second fundamental form,
+and their normals turn (`curve`). An eye or a light, and the line through the centre from which its places are counted,
+span a plane; the cross-section is what that plane cuts out of the solid. Over ridges the light may come from below the
+tangent plane.
+
 Where nothing stands above the plane, grooves do not mask each other, and each is a cross-section of its own; those
 that overlap share one.
 
@@ -23,11 +28,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.curve import Bow, applied, bow_of, is_curved, reach_over, sink, turned
 from renderer.geometry.folds import SUMS, crowded, extent_along, family_at, fold, is_alone, runs_straight
 from renderer.geometry.pieces import is_beyond, locate, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find, nearby, over_crossing
 from renderer.geometry.reach import NEAR, STRAIGHT, TURNED, Reach
-from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, shifts, spans
+from renderer.geometry.section import ACROSS, along, carried, foot_of, fraction_at, onto_base, shifts, spans
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, callee, fixed, keep, kernel, leaf
 from renderer.shading import ambient, are_distant, light_to_pattern, lit_by, normal_to_world, to_world, unit
@@ -60,6 +66,8 @@ SLOPED = 0.003
 reflect is off by about as much."""
 PARALLEL = 1e-6  # sine of the angle between grooves that count as parallel
 NEARLY_PARALLEL = 0.05  # ... in LOOSE and PAPER
+ROUND = fixed(16)  # chords of the base between two grooves, at most
+SAG = 0.005  # of the highest ridge, by which they leave it
 LEVEL = 1.001  # an eye or a light must stand this much higher than the highest ridge
 
 
@@ -77,10 +85,13 @@ class Work(NamedTuple):
     high: Floats
     lit_low: Floats  # (lights, POINTS) the lit interval, on the light's base line
     lit_high: Floats
-    light: Floats  # (lights, 4) D_b, D_w, h; 1 where it lights anything here
+    light: Floats  # (lights, 6) D_b, D_w, h (ACROSS: a direction over a curved base); 1 where it lights anything here;
+    # then how far a ray through the centre's line goes along T, by b and by height
     towards: Floats  # (lights, 2) shift along p and q for a unit of height to each light
     sums: Floats  # (SUMS, 2) what the grooves laid out stand for, where repeats are folded: shift along B, copies
     known: Floats  # (KNOWN + 1, 2) shares known of such sums: places along B, shares; then the row to write next
+    bent: Floats  # (POINTS,) on a curved base: the points along B, where their heights lean out, and their heights
+    sunk: Floats  # (lights + 1, POINTS) over the tangent plane, where each light meets them, and then the eye
     rims: Floats  # (6, 2) first and last of the periods of a fold that are summed one by one
     tint: Floats  # (2 facets + 1, lights + 1, 3) radiance of a facet under each light, then under the sky
     tinted: NDArray[np.int64]  # (2 facets + 1,) the footprint for which `tint` holds
@@ -92,15 +103,36 @@ def work_for(pattern: Pattern, lights: int) -> Work:
     return Work(
         nearby(pattern, CAPACITY), np.empty(CAPACITY, NEAR), np.empty(POINTS), np.empty(POINTS),
         np.empty(POINTS, np.int64), np.empty(POINTS, np.int64), np.empty(POINTS), np.empty(POINTS), np.empty(POINTS),
-        np.empty((lights, POINTS)), np.empty((lights, POINTS)), np.empty((lights, 4)), np.empty((lights, 2)),
-        np.empty((SUMS, 2)), np.zeros((KNOWN + 1, 2)), np.empty((6, 2)),
+        np.empty((lights, POINTS)), np.empty((lights, POINTS)), np.empty((lights, 6)), np.empty((lights, 2)),
+        np.empty((SUMS, 2)), np.zeros((KNOWN + 1, 2)), np.empty(POINTS), np.empty((lights + 1, POINTS)),
+        np.empty((6, 2)),
         np.empty((2 * facets + 1, lights + 1, 3)), np.full(2 * facets + 1, -1, np.int64),
     )  # fmt: skip
 
 
 @leaf
+def rise(pattern: Pattern, frame: np.void, view: View, d: tuple[float, float, float, float]) -> float:
+    """How far a distant light's rays go sideways, in lengths of its direction d, for a unit of height they rise over a
+    curved base, at most; 0 where the light is too low for any to reach the footprint."""
+    u, v = applied(frame, d[0], d[1])
+    bend = u * d[0] + v * d[1]
+    least, most = d[2], d[2]
+    for k in range(4):
+        p, q = on_plane(view, float(k & 1), float(k >> 1))
+        slope = d[2] + u * (p - view.p) + v * (q - view.q)
+        least, most = min(least, slope), max(most, slope)
+    beside = 2.0 * pattern.width * math.hypot(u, v)  # in the grooves that reach into the footprint
+    least, most = least - beside, most + beside
+    if bend <= 0.0 and least <= 0.0:
+        return 0.0 if d[2] <= 0.0 else 1.0 / d[2]
+    if most <= -math.sqrt(2.0 * max(bend, 0.0) * pattern.height):
+        return 0.0
+    return reach_over(least, bend, pattern.height + pattern.depth)
+
+
+@leaf
 def meet_lights(
-    pattern: Pattern, frame: np.void, view: View, blocked: np.uint64, lights: NDArray[np.void], work: Work
+    curved: bool, pattern: Pattern, frame: np.void, view: View, blocked: np.uint64, lights: NDArray[np.void], work: Work
 ) -> bool:
     """Fill `work.light` (D_b is left to `turn_lights`) and `work.towards`; False: a light stands among the ridges."""
     clear = True
@@ -110,7 +142,11 @@ def meet_lights(
         work.towards[l, 0] = work.towards[l, 1] = 0.0
         above = d[2] > LEVEL * pattern.height * d[3] and d[2] > 0.0
         work.light[l, 3] = 1.0 if above and (blocked >> np.uint64(l)) & np.uint64(1) == 0 else 0.0
-        if above:
+        if curved and d[3] == 0.0:
+            far = rise(pattern, frame, view, d)
+            work.light[l, 3] = 1.0 if far > 0.0 and (blocked >> np.uint64(l)) & np.uint64(1) == 0 else 0.0
+            work.towards[l, 0], work.towards[l, 1] = far * d[0], far * d[1]
+        elif above:
             work.towards[l, 0] = (d[0] - d[3] * view.p) / d[2]
             work.towards[l, 1] = (d[1] - d[3] * view.q) / d[2]
         elif d[2] > 0.0:
@@ -120,7 +156,7 @@ def meet_lights(
 
 @leaf
 def turn_lights(
-    frame: np.void, view: View, bx: float, by: float, lights: NDArray[np.void], paper: bool, work: Work
+    curved: bool, frame: np.void, view: View, bx: float, by: float, lights: NDArray[np.void], paper: bool, work: Work
 ) -> None:
     """Complete `work.light`: each light in the plane of the cross-section."""
     for l in range(len(lights)):
@@ -128,6 +164,14 @@ def turn_lights(
         work.light[l, 0] = (d[0] - d[3] * view.p) * bx + (d[1] - d[3] * view.q) * by
         if paper:  # one direction a pixel
             work.light[l, 2] = 0.0
+        elif curved:
+            x, y = work.light[l, 0], work.light[l, 1]
+            t = (d[0] - d[3] * view.p) * by - (d[1] - d[3] * view.q) * bx
+            square = x * x + y * y
+            work.light[l, 4] = t * x / square if square > 0.0 else 0.0
+            work.light[l, 5] = t * y / square if square > 0.0 else 0.0
+            if d[3] == 0.0:
+                work.light[l, 2] = ACROSS
 
 
 @leaf
@@ -190,17 +234,35 @@ def direction(pattern: Pattern, found: Nearby, count: int, view: View) -> tuple[
 
 
 @leaf
+def wider_of(pattern: Pattern, frame: np.void, eye_p: float, eye_q: float) -> float:
+    """How much farther sight goes over a curved base than over its tangent plane, at most."""
+    u, v = applied(frame, eye_p, eye_q)
+    bend = u * eye_p + v * eye_q
+    return max(reach_over(1.0, -bend, pattern.depth), reach_over(1.0, bend, pattern.height), 1.0)
+
+
+@leaf
 def reach_along(
-    paper: bool, pattern: Pattern, view: View, eye_p: float, eye_q: float, tx: float, ty: float, work: Work
+    paper: bool,
+    wider: float,
+    pattern: Pattern,
+    view: View,
+    eye_p: float,
+    eye_q: float,
+    tx: float,
+    ty: float,
+    work: Work,
 ) -> Reach:
     """How far what matters to the footprint lies, along T and B.
 
     Inside a groove a ray gets no deeper than the groove's width lets it, which bounds how far it goes on below.
+    wider: so much farther goes sight over a curved base.
     """
     bx, by = -ty, tx
     low, high = extent_along(view, bx, by)
     long_low, long_high = extent_along(view, tx, ty)
-    eye_b, eye_t = eye_p * bx + eye_q * by, eye_p * tx + eye_q * ty
+    seen_t = eye_p * tx + eye_q * ty
+    eye_b, eye_t = wider * (eye_p * bx + eye_q * by), wider * seen_t
     length = max(-long_low, long_high)
     p, q = on_plane(view, 1.0, 0.5)
     p1, q1 = on_plane(view, 0.5, 1.0)
@@ -218,7 +280,7 @@ def reach_along(
             wide_low, wide_high = shifts(pattern.height, below, eye_b, light_b, wide_low, wide_high)
             back, forth = shifts(pattern.height, below, eye_t, light_t, back, forth)
     wide_low, wide_high, long_low, long_high = low + wide_low, high + wide_high, long_low + back, long_high + forth
-    return Reach(tx, ty, eye_t, low, high, length, spread, wide_low, wide_high, long_low, long_high)
+    return Reach(tx, ty, seen_t, low, high, length, spread, wide_low, wide_high, long_low, long_high)
 
 
 @leaf
@@ -346,16 +408,17 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
 
 
 @leaf
-def lay(pattern: Pattern, r: Reach, first: int, last: int, work: Work) -> int:
+def lay(pattern: Pattern, r: Reach, chord: float, first: int, last: int, work: Work) -> int:
     """Lay out the cross-section of the grooves first <= g < last: the number of its points.
 
-    With ridges the plane between and around the grooves is part of it.
+    With ridges the plane between and around the grooves is part of it, in chords of a curved base.
     """
     b, w = work.b, work.w
     n = 0
     ridged = pattern.height > 0.0
+    beyond = 1.0 + (r.wide_high - r.wide_low) if chord == math.inf else pattern.width
     if ridged:
-        b[0], w[0] = min(r.wide_low, work.near[first].start) - 1.0 - (r.wide_high - r.wide_low), 0.0
+        b[0], w[0] = min(r.wide_low, work.near[first].start) - beyond, 0.0
         work.owner[0] = work.facet[0] = -1
         n = 1
     for g in range(first, last):
@@ -363,6 +426,8 @@ def lay(pattern: Pattern, r: Reach, first: int, last: int, work: Work) -> int:
         profile = pattern.profiles[pattern.grooves[pattern.pieces[near.piece].groove].profile]
         if n + profile.count + 1 >= POINTS:
             break
+        if ridged and chord < math.inf:
+            n = go_on(near.start, chord, n, work)
         for i in range(profile.count):
             j = i if near.turned > 0.0 else profile.count - 1 - i
             place = near.axis + near.turned * near.scale * pattern.points[profile.start + j, 0]
@@ -376,17 +441,45 @@ def lay(pattern: Pattern, r: Reach, first: int, last: int, work: Work) -> int:
             n += 1
         work.owner[n - 1] = work.facet[n - 1] = -1
     if ridged:
-        b[n], w[n] = max(r.wide_high, b[n - 1]) + 1.0 + (r.wide_high - r.wide_low), 0.0
+        end = max(r.wide_high, b[n - 1]) + beyond
+        if chord < math.inf:
+            n = go_on(end, chord, n, work)
+        b[n], w[n] = end, 0.0
         n += 1
     return n
 
 
 @leaf
+def go_on(b: float, chord: float, n: int, work: Work) -> int:
+    """Append places of the base between the last point and b to the cross-section, so that its chords are so short."""
+    from_b = work.b[n - 1]
+    parts = math.ceil(min(max((b - from_b) / chord, 1.0), ROUND + 0.0))
+    for i in range(1, int(parts)):
+        work.b[n], work.w[n] = from_b + (b - from_b) * i / parts, 0.0
+        work.owner[n - 1] = work.facet[n - 1] = work.owner[n] = work.facet[n] = -1
+        n += 1
+    return n
+
+
+@leaf
+def chord_of(pattern: Pattern, bow: Bow, lights: int, work: Work) -> float:
+    """How long chords of the base may be."""
+    most = abs(bow.bb)
+    for l in range(lights):
+        a = work.light[l, 4]
+        most = max(most, abs(bow.bb + (2.0 * bow.bt + bow.tt * a) * a))
+    return math.sqrt(8.0 * SAG * pattern.height / most) if most > 0.0 else 1e3 * pattern.width
+
+
+@leaf
 def tint_of(
-    index: int, i: int, distant: bool, kept: bool, pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float,
-    eye_h: float, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, work: Work,
+    index: int, i: int, distant: bool, kept: bool, curved: bool, folded_at: float, places_b: Floats, heights: Floats,
+    pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float, eye_h: float, lighting: Lighting,
+    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, work: Work,
 ) -> int:  # fmt: skip
     """The row of `work.tint` with the colours of facet i, found once a footprint where they are `kept`.
+
+    The eye sees its points at `places_b` and `heights`; `folded_at`: from where a curved base's bend counts.
 
     Where they change along the groove they are the mean of two places, as far apart as the footprint is long on root
     mean square. On curved paths the normal turns on the way to them, and to where the facet is seen through the plane.
@@ -406,7 +499,10 @@ def tint_of(
     b0, w0, b1, w1 = work.b[i], work.w[i], work.b[i + 1], work.w[i + 1]
     # the middle of what is seen of it
     middle = 0.5 * (max(work.low[i], r.low) + min(work.high[i], r.high))
-    u = min(max(fraction_at(middle, b0, w0, b1, w1, eye_d, frame.eye[2], eye_h), 0.0), 1.0)
+    u = fraction_at(
+        middle, places_b[i], heights[i], places_b[i + 1], heights[i + 1], eye_d, frame.eye[2], eye_h
+    )  # fmt: skip
+    u = min(max(u, 0.0), 1.0)
     b, w = b0 + u * (b1 - b0), w0 + u * (w1 - w0)
     material = materials[slots[slot]]
     places = 2 if turn != 0.0 or not distant or material.metallic > 0.0 or material.f90 > 0.0 else 1
@@ -419,7 +515,11 @@ def tint_of(
         sine, cosine = math.sin(turn * t), math.cos(turn * t)
         bx, by = -r.ty * cosine - r.tx * sine, r.tx * cosine - r.ty * sine
         at = to_world(frame, view.p + b * bx + t * r.tx, view.q + b * by + t * r.ty, w)
-        n = normal_to_world(frame, (-(w1 - w0) * bx, -(w1 - w0) * by, b1 - b0))
+        n_pattern = (-(w1 - w0) * bx, -(w1 - w0) * by, b1 - b0)
+        if curved:
+            x, y = (b - folded_at) * bx + t * r.tx, (b - folded_at) * by + t * r.ty
+            n_pattern = turned(frame, x, y, w, n_pattern)
+        n = normal_to_world(frame, n_pattern)
         e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
         for l in range(len(lights)):
             colour = lit_by(lights[l], material, n, e, at)
@@ -433,7 +533,7 @@ def tint_of(
 
 @callee
 def fold_within(
-    pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], work: Work
+    curved: bool, pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], work: Work
 ) -> tuple[int, int, Reach]:
     """Fill `work.near` with what stands for all grooves within reach, where they are many periods of one family.
 
@@ -447,10 +547,11 @@ def fold_within(
     tx, ty, _ = family_at(family, view.p, view.q)
     eye_w = frame.eye[2]
     eye_p, eye_q = frame.eye[0] - view.p, frame.eye[1] - view.q
-    r = reach_along(False, pattern, view, eye_p / eye_w, eye_q / eye_w, tx, ty, work)
+    wider = wider_of(pattern, frame, eye_p / eye_w, eye_q / eye_w) if curved else 1.0
+    r = reach_along(False, wider, pattern, view, eye_p / eye_w, eye_q / eye_w, tx, ty, work)
     if not runs_straight(family, view, r) or not is_alone(pattern, which, view, r, work.found):
         return 0, 0, none
-    turn_lights(frame, view, -ty, tx, lights, False, work)
+    turn_lights(curved, frame, view, -ty, tx, lights, False, work)
     eye_d = eye_q * tx - eye_p * ty
     rows, entries = fold(pattern, family, view, r, eye_d, eye_w, work.light, work.near, work.sums, work.rims)
     return rows, entries, r
@@ -522,13 +623,14 @@ def line(
         view = view_of(footprint, frame, camera)
         eye_w = frame.eye[2]
         method[index] = NOT_MINE
-        clear = meet_lights(pattern, frame, view, footprint.blocked, lights, work)
+        curved = not paper and is_curved(frame)
+        clear = meet_lights(curved, pattern, frame, view, footprint.blocked, lights, work)
         if strict and (not clear or eye_w <= LEVEL * pattern.height):
             continue
         eye_p, eye_q = (frame.eye[0] - view.p) / eye_w, (frame.eye[1] - view.q) / eye_w
         grooves = entries = 0
         if not paper and clear and len(pattern.families) > 0 and eye_w > LEVEL * pattern.height:
-            grooves, entries, r = fold_within(pattern, frame, view, lights, work)
+            grooves, entries, r = fold_within(curved, pattern, frame, view, lights, work)
         folded = grooves > 0
         if entries > 1:
             work.known[:, 0] = np.inf
@@ -541,19 +643,21 @@ def line(
             if eye_w <= LEVEL * pattern.height or not near_groove(pattern, count, view, eye_p, eye_q, work):
                 count = 0
             tx, ty = direction(pattern, work.found, count, view)
-            r = reach_along(paper, pattern, view, eye_p, eye_q, tx, ty, work)
+            wider = wider_of(pattern, frame, eye_p, eye_q) if curved else 1.0
+            r = reach_along(paper, wider, pattern, view, eye_p, eye_q, tx, ty, work)
             if strict and count > 0 and not pattern.parallel:
                 count = find_within(pattern, view, r, work)
                 if count < 0:
                     continue
             grooves = pick(strict, pattern, view, r, count, work)
-        if grooves < 0 or (ridged and not folded and grooves * (most + 1) + 2 > POINTS):
+        chords = ROUND if curved else 0
+        if grooves < 0 or (ridged and not folded and grooves * (most + 1 + chords) + 2 + chords > POINTS):
             continue
         method[index] = BASE
 
         bx, by = -r.ty, r.tx
         centre = bx * view.p + by * view.q
-        turn_lights(frame, view, bx, by, lights, paper, work)
+        turn_lights(curved, frame, view, bx, by, lights, paper, work)
         half = 0.0
         if paper:  # the larger projection of the footprint's two axes stands for it (000, 4.2)
             rp, rq = on_plane(view, 1.0, 0.5)
@@ -561,13 +665,15 @@ def line(
             half = max(abs((rp - view.p) * bx + (rq - view.q) * by), abs((dp - view.p) * bx + (dq - view.q) * by))
         eye_d = (frame.eye[0] - view.p) * bx + (frame.eye[1] - view.q) * by
         eye_h = 0.0 if paper else 1.0
+        bow = bow_of(frame, bx, by)
+        chord = chord_of(pattern, bow, len(lights), work) if curved and ridged else math.inf
         red = green = blue = 0.0
         plain = 1.0  # the share of the plane around the grooves
         first = 0
         while first < grooves:
             last = grooves if ridged and not folded else first + 1
             finish = work.near[first].finish
-            if strict and not ridged and not folded and (finish <= r.low or work.near[first].start >= r.high):
+            if strict and not (ridged or folded or curved) and (finish <= r.low or work.near[first].start >= r.high):
                 first += 1  # beside the footprint, and nothing overlaps
                 continue
             method[index] = SEGMENT_METHOD if paper else LINE
@@ -579,21 +685,31 @@ def line(
                 while last < grooves and work.near[last].start < finish - 1e-9 * (finish - work.near[first].start):
                     finish = max(finish, work.near[last].finish)
                     last += 1
-            n = lay(pattern, r, first, last, work)
+            # where repeats are folded, a period stands for those all over the footprint
+            amid = 0.5 * (work.near[first].start + work.near[last - 1].finish) if folded else 0.0
+            n = lay(pattern, r, chord, first, last, work)
             first = last
-            if not (folded and ridged):
-                plain -= copies * weight_all(
-                    folded, entries, work, paper, view, bx, by, centre, half, work.b[0], work.b[n - 1]
-                )
+            b, h = work.b, work.w
+            if curved:
+                b, h = work.bent, work.sunk[len(lights)]
+                for i in range(n):
+                    b[i] = work.b[i] + bow.spread * (work.b[i] - amid) * work.w[i]
+                sink(bow, 0.0, r.eye_t, amid, work.b, work.w, n, h)
             for l in range(len(lights)):
                 if work.light[l, 3] != 0.0:
                     light = work.light[l]
+                    if curved:
+                        sink(bow, light[4], light[5], amid, work.b, work.w, n, work.sunk[l])
+                    lit_h = work.sunk[l] if curved else work.w
                     for i in range(n):
-                        work.x[i] = onto_base(work.b[i], work.w[i], light[0], light[1], light[2])
-                    spans(work.b, work.x, work.lit_low[l], work.lit_high[l], n, foot_of(light[0], light[2]))
+                        work.x[i] = onto_base(b[i], lit_h[i], light[0], light[1], light[2])
+                    spans(b, work.x, work.lit_low[l], work.lit_high[l], n, foot_of(light[0], light[2]))
             for i in range(n):
-                work.x[i] = onto_base(work.b[i], work.w[i], eye_d, eye_w, eye_h)
-            spans(work.b, work.x, work.low, work.high, n, foot_of(eye_d, eye_h))
+                work.x[i] = onto_base(b[i], h[i], eye_d, eye_w, eye_h)
+            spans(b, work.x, work.low, work.high, n, foot_of(eye_d, eye_h))
+            if not (ridged and (folded or curved)):
+                low, high = (work.x[0], work.x[n - 1]) if curved else (work.b[0], work.b[n - 1])
+                plain -= copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, low, high)
             for i in range(n - 1):
                 if work.owner[i] >= 0:
                     copies = work.near[work.owner[i]].copies
@@ -607,28 +723,30 @@ def line(
                 part = copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, low, high)
                 if part <= 0.0:
                     continue
-                if folded and ridged:
+                if ridged and (folded or curved):
                     plain -= part
-                kept = distant and (matte or not folded)
+                kept = distant and (matte or not folded) and not curved
                 row = tint_of(
-                    index, i, distant, kept, pattern, frame, view, r, eye_d, eye_h, lighting, materials, slots, albedo,
-                    work,
+                    index, i, distant, kept, curved, amid, b, h, pattern, frame, view, r, eye_d, eye_h, lighting,
+                    materials, slots, albedo, work,
                 )  # fmt: skip
                 tint = work.tint[row]
                 red += part * tint[len(lights), 0]
                 green += part * tint[len(lights), 1]
                 blue += part * tint[len(lights), 2]
-                b0, w0, b1, w1 = work.b[i], work.w[i], work.b[i + 1], work.w[i + 1]
+                b0, w0, b1, w1 = b[i], h[i], b[i + 1], h[i + 1]
                 for l in range(len(lights)):
                     light = work.light[l]
+                    lit_h = work.sunk[l] if curved else work.w
+                    v0, v1 = lit_h[i], lit_h[i + 1]
                     lit_low, lit_high = work.lit_low[l, i], work.lit_high[l, i]
                     if light[3] == 0.0 or lit_high <= lit_low:
                         continue
                     from_x, to_x = low, high
-                    if lit_low > onto_base(b0, w0, light[0], light[1], light[2]):
-                        from_x = max(from_x, carried(lit_low, b0, w0, b1, w1, light, eye_d, eye_w, eye_h))
-                    if lit_high < onto_base(b1, w1, light[0], light[1], light[2]):
-                        to_x = min(to_x, carried(lit_high, b0, w0, b1, w1, light, eye_d, eye_w, eye_h))
+                    if lit_low > onto_base(b0, v0, light[0], light[1], light[2]):
+                        from_x = max(from_x, carried(lit_low, b0, v0, b1, v1, w0, w1, light, eye_d, eye_w, eye_h))
+                    if lit_high < onto_base(b1, v1, light[0], light[1], light[2]):
+                        to_x = min(to_x, carried(lit_high, b0, v0, b1, v1, w0, w1, light, eye_d, eye_w, eye_h))
                     if to_x <= from_x:
                         continue
                     lit = part
@@ -642,13 +760,15 @@ def line(
         if plain > 1e-12:
             n_world = normal_to_world(frame, (0.0, 0.0, 1.0))
             material = materials[slots[0]]
-            side = 2 if not distant or material.metallic > 0.0 or material.f90 > 0.0 else 1
+            side = 2 if not distant or material.metallic > 0.0 or material.f90 > 0.0 or curved else 1
             eye = to_world(frame, frame.eye[0], frame.eye[1], eye_w)
             part = plain / (side * side)
             for k in range(side * side):  # at the places of Gauss in the pixel's square, where the light changes in it
                 p, q = view.p, view.q
                 if side == 2:
                     p, q = on_plane(view, 0.5 + GAUSS * (2 * (k & 1) - 1), 0.5 + GAUSS * (2 * (k >> 1) - 1))
+                if curved:
+                    n_world = normal_to_world(frame, turned(frame, p - view.p, q - view.q, 0.0, (0.0, 0.0, 1.0)))
                 at = to_world(frame, p, q, 0.0)
                 e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
                 colour = ambient(material, lighting.sky, albedo, n_world, e)

@@ -236,6 +236,8 @@ FRAME = np.dtype(
         ("axes", "f8", (3, 3)),  # columns: dP/dp, dP/dq, sigma N: world units a pattern unit
         ("dual", "f8", (3, 3)),  # inverse of `axes`: rows carry world vectors, and normals back, to pattern space
         ("eye", "f8", (3,)),  # the camera in pattern space (absolute p, q; w)
+        ("form", "f8", (3,)),  # a, b, c: (a dp^2 + 2 b dp dq + c dq^2) / 2 is how far the surface falls below the
+        # plane, pattern units (the second fundamental form over sigma); 0 where it is flat
     ]
 )
 """The tangent plane at a surface point: X = origin + axes (x - (pq, 0)). A flat object has one for all its pixels."""

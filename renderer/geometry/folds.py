@@ -157,7 +157,7 @@ def changes(family: np.void, view: View, r: Reach, eye_w: float, light: Floats) 
     deep = (family.height + family.depth) / family.period
     shift = deep / (eye_w - family.height)
     for l in range(len(light)):
-        if light[l, 3] != 0.0 and light[l, 2] != 0.0:
+        if light[l, 3] != 0.0 and light[l, 2] > 0.0:
             shift = max(shift, max(deep, 1.0) / (light[l, 1] - family.height))
     middle = abs(view.w1 + 0.5 * (view.wu + view.wv))
     spread = abs(view.wu) + abs(view.wv)

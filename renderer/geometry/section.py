@@ -12,19 +12,25 @@ from renderer.geometry.view import View
 from renderer.kernel import leaf
 from renderer.tables import Floats
 
+ACROSS = -1.0
+"""h of a direction that may be as low as it likes: places count square to it, in lengths of (db, dw), not along the
+base line."""
+
 
 @leaf
 def onto_base(b: float, w: float, db: float, dw: float, h: float) -> float:
     """Where the line from D through (b, w) meets the base line w = 0; w below D."""
     if h == 0.0:
         return b - w * db / dw
+    if h < 0.0:
+        return b * dw - w * db
     return db + (b - db) * dw / (dw - w)
 
 
 @leaf
 def foot_of(db: float, h: float) -> float:
     """The place below D on the base line: an end of it for a direction."""
-    if h == 0.0:
+    if h <= 0.0:
         return math.inf if db > 0.0 else -math.inf
     return db
 
@@ -52,7 +58,7 @@ def spans(b: Floats, x: Floats, low: Floats, high: Floats, count: int, foot: flo
 @leaf
 def fraction_at(x: float, b0: float, w0: float, b1: float, w1: float, db: float, dw: float, h: float) -> float:
     """Where on the facet from (b0, w0) to (b1, w1) the point lies that projects to x: 0 at its start, 1 at its end."""
-    if h == 0.0:
+    if h <= 0.0:
         x0, x1 = onto_base(b0, w0, db, dw, h), onto_base(b1, w1, db, dw, h)
         return (x - x0) / (x1 - x0)
     c = (x - db) / dw
@@ -61,11 +67,15 @@ def fraction_at(x: float, b0: float, w0: float, b1: float, w1: float, db: float,
 
 @leaf
 def carried(
-    x: float, b0: float, w0: float, b1: float, w1: float, light: Floats, db: float, dw: float, h: float
-) -> float:
-    """The point of a facet that the light (D_b, D_w, h, ...) projects to x, projected from D instead."""
+    x: float, b0: float, w0: float, b1: float, w1: float, h0: float, h1: float, light: Floats, db: float, dw: float,
+    h: float,
+) -> float:  # fmt: skip
+    """The point of a facet that the light (D_b, D_w, h, ...) projects to x, projected from D instead.
+
+    For D the facet's ends are at the heights h0 and h1.
+    """
     u = fraction_at(x, b0, w0, b1, w1, light[0], light[1], light[2])
-    return onto_base(b0 + u * (b1 - b0), w0 + u * (w1 - w0), db, dw, h)
+    return onto_base(b0 + u * (b1 - b0), h0 + u * (h1 - h0), db, dw, h)
 
 
 @leaf

@@ -234,6 +234,41 @@ def fill_frame(
     frame.eye[2] = d[2, 0] * e[0] + d[2, 1] * e[1] + d[2, 2] * e[2]
 
 
+@leaf
+def bend(obj: np.void, triangles: Triangles, hit: np.void, frame: np.void) -> None:
+    """Fill `frame.form`: minus the normal part of the surface's second derivatives, which is how its normal turns.
+
+    dN/dp . dP/dp and so on. On spheres the normal turns as the place does, by 1 / radius; on cylinders around the axis
+    alone; on meshes as the smooth normals go over the triangle.
+    """
+    x, f = frame.axes, frame.form
+    sigma = math.sqrt(x[0, 2] * x[0, 2] + x[1, 2] * x[1, 2] + x[2, 2] * x[2, 2])
+    if obj.shape == SPHERE or obj.shape == CYLINDER:
+        along = (obj.rotation[0, 2], obj.rotation[1, 2], obj.rotation[2, 2])
+        over = sigma * obj.size[0]
+        for i in range(3):
+            f[0] += x[i, 0] * x[i, 0] / over
+            f[1] += x[i, 0] * x[i, 1] / over
+            f[2] += x[i, 1] * x[i, 1] / over
+        if obj.shape == CYLINDER:
+            p = x[0, 0] * along[0] + x[1, 0] * along[1] + x[2, 0] * along[2]
+            q = x[0, 1] * along[0] + x[1, 1] * along[1] + x[2, 1] * along[2]
+            f[0], f[1], f[2] = f[0] - p * p / over, f[1] - p * q / over, f[2] - q * q / over
+    elif obj.shape == MESH:
+        uv, corner, m = triangles.uv[hit.face], triangles.normals[hit.face], obj.mapping
+        p1, q1 = (uv[1, 0] - uv[0, 0]) * m[0], (uv[1, 1] - uv[0, 1]) * m[1]
+        p2, q2 = (uv[2, 0] - uv[0, 0]) * m[0], (uv[2, 1] - uv[0, 1]) * m[1]
+        area = p1 * q2 - p2 * q1
+        if area == 0.0:
+            return
+        for i in range(3):
+            one, two = corner[1, i] - corner[0, i], corner[2, i] - corner[0, i]
+            by_p, by_q = (q2 * one - q1 * two) / area, (p1 * two - p2 * one) / area
+            f[0] += by_p * x[i, 0] / sigma
+            f[1] += 0.5 * (by_p * x[i, 1] + by_q * x[i, 0]) / sigma
+            f[2] += by_q * x[i, 1] / sigma
+
+
 @kernel
 def frames_at(
     objects: NDArray[np.void], triangles: Triangles, origin: Floats, directions: Floats, hits: NDArray[np.void],
@@ -307,6 +342,9 @@ def frames_at(
             n = (-n[0], -n[1], -n[2])
             frame.grooved = 0
         fill_frame(frame, p, a, b, n, origin)
+        frame.form[:] = 0.0
+        if frame.grooved == 1:
+            bend(obj, triangles, hit, frame)
 
 
 @kernel

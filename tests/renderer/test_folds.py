@@ -196,8 +196,8 @@ def looked_at(plate: Plate, check: Check, kind: str, count: int, profile: list[l
     for footprint in seen.footprints:
         frame = seen.frames[footprint["frame"]]
         view = view_of(footprint, frame, camera)
-        method_line.meet_lights(pattern, frame, view, footprint["blocked"], lights, work)
-        rows, entries, _ = method_line.fold_within(pattern, frame, view, lights, work)
+        method_line.meet_lights(False, pattern, frame, view, footprint["blocked"], lights, work)
+        rows, entries, _ = method_line.fold_within(False, pattern, frame, view, lights, work)
         found.append(rows + entries if rows else -1)
     return found
 
