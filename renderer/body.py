@@ -27,6 +27,8 @@ CELL = 0.009  # of the grid on spheres and cylinders, radians: chords leave the 
 LIMIT = 12_000_000
 """The most triangles of a body."""
 
+_BOUNCE = 8.0
+"""Heights and widths of the pattern's grooves: how far beyond a plate's edge a bounce is followed along them."""
 _FAR = 400.0  # heights of the pattern: how far beyond a plate's edge grooves still stand in the light
 
 
@@ -69,14 +71,14 @@ _NO_BASE = Base(RECTANGLE, np.zeros(2), np.ones(4), _NOTHING, np.zeros((0, 3, 2)
 
 
 def build(
-    row: int, obj: np.void, pattern: Pattern, triangles: Triangles, eye: Floats, lights: NDArray[np.void]
+    row: int, obj: np.void, pattern: Pattern, triangles: Triangles, eye: Floats, lights: NDArray[np.void], bounces: int
 ) -> Body:  # fmt: skip
     """The body of an object, row `row` of OBJECT. Raises ValueError where it would have too many triangles.
 
-    eye (3,) and lights (LIGHT) say how far a plate's surroundings matter.
+    eye (3,), lights (LIGHT) and how often its mirrors are followed say how far a plate's surroundings matter.
     """
     if obj["shape"] == RECTANGLE:
-        return _plate(row, obj, pattern, eye, lights)
+        return _plate(row, obj, pattern, eye, lights, bounces)
     return _shell(row, obj, pattern, triangles)
 
 
@@ -95,12 +97,14 @@ def _window(obj: np.void) -> Floats:
     return np.array([du, dv, du + su, dv + sv])
 
 
-def _plate(row: int, obj: np.void, pattern: Pattern, eye: Floats, lights: NDArray[np.void]) -> Body:
+def _plate(row: int, obj: np.void, pattern: Pattern, eye: Floats, lights: NDArray[np.void], bounces: int) -> Body:
     origin, axes = plate_axes(obj)
     window = _window(obj)
     corners, normals, slot, bend, size = _NOTHING, np.zeros((0, 3)), np.zeros(0, np.int32), np.zeros((0, 4)), 0
     if len(pattern.pieces):
-        made = mesh.build(pattern, tuple(window), margin=_margin(pattern, window, origin, axes, eye, lights))
+        margin = _margin(pattern, window, origin, axes, eye, lights)
+        margin += bounces * _BOUNCE * (pattern.height + pattern.depth + 2.0 * pattern.width)
+        made = mesh.build(pattern, tuple(window), margin=margin)
         corners, slot, bend = np.ascontiguousarray(made.vertices[made.triangles]), made.slot, made.bend
         normals = facing(corners)
         size = 12 * (len(made.vertices) + len(made.triangles))

@@ -15,15 +15,26 @@ from numpy.typing import NDArray
 
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of
-from renderer.geometry.solid import OPEN, lift, meet, normal_of, polish
-from renderer.geometry.spans import NO, YES, events
+from renderer.geometry.rays import follow
+from renderer.geometry.solid import DOWN, is_lit, lift, meet, normal_of, polish
+from renderer.geometry.spans import events
 from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
-from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit, white
+from renderer.shading import (
+    ambient,
+    any_mirror,
+    dot,
+    light_to_pattern,
+    lit_by,
+    mirrored,
+    normal_to_world,
+    to_world,
+    unit,
+    white,
+)
 from renderer.tables import CSG, NOT_MINE, Camera, Lighting, Pattern
 
 SHARED = fixed(32)  # up to so many pieces are found once for all samples of a footprint
-LEVEL = 1e-6  # a light's slope to the plane is taken for at least this
 FEW = 2  # with a tolerance, and no more pieces near than this, it begins with
 PROBE = 4  # the corners and PROBE * PROBE samples,
 FIRST = 8  # else or then takes FIRST * FIRST,
@@ -33,26 +44,28 @@ SURE = 0.5  # how much of the tolerance the standard error may take
 
 @kernel
 def csg(
-    samples: int, tolerance: float, sparing: bool, seed: int, pattern: Pattern, footprints: NDArray[np.void],
-    chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera, lighting: Lighting,
-    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: NDArray[np.float64],
+    samples: int, bounces: int, tolerance: float, sparing: bool, seed: int, pattern: Pattern,
+    footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera,
+    lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: NDArray[np.float64],
     radiance: NDArray[np.float64], method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
     samples: at least so many a footprint, in a grid of strata, where the tolerance is 0; else as many as that asks for,
     which is the error relative to a white surface in the same light. sparing: NOT_MINE, where that is more than
-    MOST * MOST. slots: rows of `materials` for the pattern's
-    facets, the object's own first.
+    MOST * MOST. bounces: how often light is followed from mirror to mirror. slots: rows of `materials` for the
+    pattern's facets, the object's own first.
     """
-    owned = nearby(pattern, max(pattern.near, SHARED)), events(pattern)
-    found, spans = borrow(owned[0]), borrow(owned[1])
+    capacity = max(pattern.near, SHARED)
+    owned = nearby(pattern, capacity), events(pattern), nearby(pattern, capacity)
+    found, spans, around = borrow(owned[0]), borrow(owned[1]), borrow(owned[2])
     pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
     lights, eye = lighting.lights, camera.origin
     high, low = pattern.height, -pattern.depth
     thin = 1e-6 * (high - low) + 1e-300
     above = np.zeros(MOST)
+    shows = bounces > 0 and any_mirror(materials, slots)
     for index in chosen:
         footprint = footprints[index]
         frame = frames[footprint.frame]
@@ -88,7 +101,7 @@ def csg(
         target = 0.0
         if tolerance > 0.0:
             across = down = FIRST
-            if 0 <= shared <= FEW:
+            if 0 <= shared <= FEW and not shows:
                 across, down, corners = PROBE, PROBE, 4
             target = SURE * tolerance * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)
@@ -111,7 +124,7 @@ def csg(
                     u, v = (i % across + ju) / across, (i // across + jv) / down
                 p, q = on_plane(view, u, v)
                 gp, gq = (frame.eye[0] - p) / dw, (frame.eye[1] - q) / dw
-                m = meet(pattern, found, spans, shared, p, q, gp, gq, top, low - thin, NO)
+                m = meet(pattern, found, spans, shared, p, q, gp, gq, top, low - thin, DOWN)
                 at = max(polish(pattern, found, m, p, q, gp, gq), low)
                 x, y = p + at * gp, q + at * gq
                 n = normal_of(pattern, found, m, x, y, gp, gq)
@@ -129,6 +142,8 @@ def csg(
                 colour = ambient(material, lighting.sky, albedo, n_world, e)
                 red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 lit = np.uint64(0)
+                off = lift(pattern, found, m) / math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+                sx, sy, sw = x + off * n[0], y + off * n[1], at + off * n[2]
                 for l in range(len(lights)):
                     if (footprint.blocked >> np.uint64(l)) & np.uint64(1):
                         continue
@@ -139,24 +154,18 @@ def csg(
                     colour = lit_by(lights[l], material, n_world, e, at_world)
                     if colour[0] <= 0.0 and colour[1] <= 0.0 and colour[2] <= 0.0:
                         continue
-                    off = lift(pattern, found, m) / math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
-                    sx, sy, sw = x + off * n[0], y + off * n[1], at + off * n[2]
-                    lp, lq, lw = d[0] - d[3] * sx, d[1] - d[3] * sy, d[2] - d[3] * sw
-                    level = LEVEL * math.hypot(lp, lq)
-                    if abs(lw) < level:  # rays are followed by height
-                        lw = math.copysign(level, lw)
-                    lp, lq = lp / lw, lq / lw
-                    roof = high + thin if d[3] == 0.0 else min(high + thin, sw + lw)
-                    if lw < 0.0:
-                        s = meet(pattern, found, spans, shared, sx - sw * lp, sy - sw * lq, lp, lq, sw, sw + lw, NO)
-                    elif roof > sw:
-                        s = meet(pattern, found, spans, shared, sx - sw * lp, sy - sw * lq, lp, lq, roof, sw, YES)
-                    else:
-                        s = OPEN
-                    if s.w > -math.inf:
+                    if not is_lit(pattern, found, spans, shared, d, sx, sy, sw):
                         continue
                     lit |= np.uint64(1) << np.uint64(l)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
+                if shows and i >= 0:
+                    through = mirrored(material, dot(n_world, e))
+                    if max(through[0], through[1], through[2]) > 0.0:
+                        colour = follow(
+                            bounces, through, n_world, e, (sx, sy, sw), footprint.blocked, pattern, frame, lighting,
+                            materials, slots, albedo, around, spans,
+                        )  # fmt: skip
+                        red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 if i == -corners:
                     first_facet, first_found, first_lit = m.facet, item, lit
                 elif m.facet != first_facet or item != first_found or lit != first_lit:

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from renderer.errors import Cancelled
 from renderer.geometry.query import find, nearby
-from renderer.geometry.solid import meet, normal_of, polish
-from renderer.geometry.spans import NO, events
+from renderer.geometry.solid import DOWN, meet, normal_of, polish
+from renderer.geometry.spans import events
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.shading import unit
 from renderer.tables import Ints, Pattern
@@ -112,7 +112,7 @@ def sample(
                 shares[i, j, s] = 0.0
             for point in range(k * k):
                 p, q = p0 + dp * (point % k + 0.5) / k, q0 + dq * (point // k + 0.5) / k
-                m = meet(pattern, found, spans, shared, p, q, 0.0, 0.0, high + thin, low - thin, NO)
+                m = meet(pattern, found, spans, shared, p, q, 0.0, 0.0, high + thin, low - thin, DOWN)
                 height += max(polish(pattern, found, m, p, q, 0.0, 0.0), low)
                 n = unit(normal_of(pattern, found, m, p, q, 0.0, 0.0))
                 np0, nq0, nw0 = np0 + n[0], nq0 + n[1], nw0 + n[2]

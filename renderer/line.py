@@ -33,10 +33,22 @@ from renderer.geometry.folds import SUMS, crowded, extent_along, family_at, fold
 from renderer.geometry.pieces import is_beyond, locate, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find, nearby, over_crossing
 from renderer.geometry.reach import NEAR, STRAIGHT, TURNED, Reach
+from renderer.geometry.reflection import Mirrors, Section, mirrors, reflections
 from renderer.geometry.section import ACROSS, along, carried, foot_of, fraction_at, onto_base, shifts, spans
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, callee, fixed, keep, kernel, leaf
-from renderer.shading import ambient, are_distant, light_to_pattern, lit_by, normal_to_world, to_world, unit
+from renderer.shading import (
+    ambient,
+    any_mirror,
+    are_distant,
+    dot,
+    light_to_pattern,
+    lit_by,
+    mirrored,
+    normal_to_world,
+    to_world,
+    unit,
+)
 from renderer.tables import (
     BASE,
     LINE,
@@ -95,18 +107,22 @@ class Work(NamedTuple):
     rims: Floats  # (6, 2) first and last of the periods of a fold that are summed one by one
     tint: Floats  # (2 facets + 1, lights + 1, 3) radiance of a facet under each light, then under the sky
     tinted: NDArray[np.int64]  # (2 facets + 1,) the footprint for which `tint` holds
+    section: Section  # the cross-section as mirrors see it
+    mirrors: Mirrors
 
 
 @leaf
 def work_for(pattern: Pattern, lights: int) -> Work:
     facets = len(pattern.facet_slot)
+    b, w = np.empty(POINTS), np.empty(POINTS)
     return Work(
-        nearby(pattern, CAPACITY), np.empty(CAPACITY, NEAR), np.empty(POINTS), np.empty(POINTS),
+        nearby(pattern, CAPACITY), np.empty(CAPACITY, NEAR), b, w,
         np.empty(POINTS, np.int64), np.empty(POINTS, np.int64), np.empty(POINTS), np.empty(POINTS), np.empty(POINTS),
         np.empty((lights, POINTS)), np.empty((lights, POINTS)), np.empty((lights, 6)), np.empty((lights, 2)),
         np.empty((SUMS, 2)), np.zeros((KNOWN + 1, 2)), np.empty(POINTS), np.empty((lights + 1, POINTS)),
         np.empty((6, 2)),
         np.empty((2 * facets + 1, lights + 1, 3)), np.full(2 * facets + 1, -1, np.int64),
+        Section(b, w, np.empty(POINTS, np.int64), np.empty((lights, POINTS, 2))), mirrors(),
     )  # fmt: skip
 
 
@@ -593,16 +609,45 @@ def weight_all(
     return up_to(view, bx, by, centre, high, entries, work) - up_to(view, bx, by, centre, low, entries, work)
 
 
+@leaf
+def section_for_mirrors(curved: bool, pattern: Pattern, slots: NDArray[np.int32], n: int, work: Work) -> None:
+    """Complete `work.section`: which material its facets have, and which part of each is lit.
+
+    Mirrors take a curved base for its tangent plane: what they show is near.
+    """
+    section, places = work.section, work.bent if curved else work.b
+    for i in range(n - 1):
+        slot = 0
+        if work.owner[i] >= 0:
+            groove = pattern.grooves[pattern.pieces[work.near[work.owner[i]].piece].groove]
+            slot = pattern.facet_slot[groove.slot + work.facet[i]] + 1
+        section.material[i] = slots[slot]
+        b0, b1 = places[i], places[i + 1]
+        for l in range(len(work.light)):
+            d, lit = work.light[l], section.lit[l, i]
+            heights = work.sunk[l] if curved else work.w
+            w0, w1 = heights[i], heights[i + 1]
+            low, high = work.lit_low[l, i], work.lit_high[l, i]
+            lit[0] = lit[1] = 0.0
+            if d[3] != 0.0 and high > low:
+                if low > onto_base(b0, w0, d[0], d[1], d[2]):
+                    lit[0] = fraction_at(low, b0, w0, b1, w1, d[0], d[1], d[2])
+                lit[1] = 1.0
+                if high < onto_base(b1, w1, d[0], d[1], d[2]):
+                    lit[1] = fraction_at(high, b0, w0, b1, w1, d[0], d[1], d[2])
+
+
 @kernel
 def line(
-    mode: int, pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64],
+    mode: int, bounces: int, pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64],
     frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void],
     slots: NDArray[np.int32], albedo: Floats, radiance: Floats, method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance (n, 3) and the method each took.
 
-    What has too many grooves in it is not its own, whatever the mode: STRICT, LOOSE or PAPER. slots: rows of
-    `materials` for the pattern's facets, the object's own first.
+    What has too many grooves in it is not its own, whatever the mode: STRICT, LOOSE or PAPER. bounces: how often light
+    is followed from mirror to mirror; STRICT does where no mirror sees another groove, as nothing stands above the
+    plane. slots: rows of `materials` for the pattern's facets, the object's own first.
     """
     owned = work_for(pattern, len(lighting.lights))
     work, pattern, frames, lighting = borrow(owned), borrow(pattern), borrow(frames), borrow(lighting)
@@ -613,6 +658,7 @@ def line(
     matte = True
     for slot in slots:
         matte = matte and materials[slot].metallic == 0.0 and materials[slot].f90 == 0.0
+    shows = bounces > 0 and any_mirror(materials, slots)
     ridged = pattern.height > 0.0
     most = 0  # points of a cross-section
     for profile in pattern.profiles:
@@ -625,7 +671,7 @@ def line(
         method[index] = NOT_MINE
         curved = not paper and is_curved(frame)
         clear = meet_lights(curved, pattern, frame, view, footprint.blocked, lights, work)
-        if strict and (not clear or eye_w <= LEVEL * pattern.height):
+        if strict and (not clear or eye_w <= LEVEL * pattern.height or (shows and ridged)):
             continue
         eye_p, eye_q = (frame.eye[0] - view.p) / eye_w, (frame.eye[1] - view.q) / eye_w
         grooves = entries = 0
@@ -664,6 +710,7 @@ def line(
             dp, dq = on_plane(view, 0.5, 0.0)
             half = max(abs((rp - view.p) * bx + (rq - view.q) * by), abs((dp - view.p) * bx + (dq - view.q) * by))
         eye_d = (frame.eye[0] - view.p) * bx + (frame.eye[1] - view.q) * by
+        eye_t = (frame.eye[0] - view.p) * r.tx + (frame.eye[1] - view.q) * r.ty
         eye_h = 0.0 if paper else 1.0
         bow = bow_of(frame, bx, by)
         chord = chord_of(pattern, bow, len(lights), work) if curved and ridged else math.inf
@@ -710,6 +757,10 @@ def line(
             if not (ridged and (folded or curved)):
                 low, high = (work.x[0], work.x[n - 1]) if curved else (work.b[0], work.b[n - 1])
                 plain -= copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, low, high)
+            if shows:
+                section_for_mirrors(curved, pattern, slots, n, work)
+                d = work.mirrors.eye[0]
+                d[0], d[1], d[2], d[3] = eye_d, eye_t, eye_w, eye_h
             for i in range(n - 1):
                 if work.owner[i] >= 0:
                     copies = work.near[work.owner[i]].copies
@@ -726,11 +777,11 @@ def line(
                 if ridged and (folded or curved):
                     plain -= part
                 kept = distant and (matte or not folded) and not curved
-                row = tint_of(
+                hue = tint_of(
                     index, i, distant, kept, curved, amid, b, h, pattern, frame, view, r, eye_d, eye_h, lighting,
                     materials, slots, albedo, work,
                 )  # fmt: skip
-                tint = work.tint[row]
+                tint = work.tint[hue]
                 red += part * tint[len(lights), 0]
                 green += part * tint[len(lights), 1]
                 blue += part * tint[len(lights), 2]
@@ -755,6 +806,23 @@ def line(
                             folded, entries, work, paper, view, bx, by, centre, half, from_x, to_x
                         )
                     red, green, blue = red + lit * tint[l, 0], green + lit * tint[l, 1], blue + lit * tint[l, 2]
+                if not shows:
+                    continue
+                clear_of = mirrored(materials[work.section.material[i]], 0.0)
+                if max(clear_of[0], clear_of[1], clear_of[2]) <= 0.0:
+                    continue
+                if not folded:  # colours are those of the middle of what is seen
+                    low, high = max(low, min(r.low, -half)), min(high, max(r.high, half))
+                made = reflections(
+                    i, low, high, n, bounces, r.spread, frame, view, r.tx, r.ty, lighting, materials, albedo,
+                    work.section, work.mirrors,
+                )  # fmt: skip
+                if made < 0:
+                    method[index] = NOT_MINE
+                for k in range(made):
+                    row = work.mirrors.seen[k]
+                    lit = copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, row[0], row[1])
+                    red, green, blue = red + lit * row[2], green + lit * row[3], blue + lit * row[4]
         if folded and plain < 0.0:  # what a fold is off by
             red, green, blue = red / (1.0 - plain), green / (1.0 - plain), blue / (1.0 - plain)
         if plain > 1e-12:
@@ -773,6 +841,11 @@ def line(
                 e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
                 colour = ambient(material, lighting.sky, albedo, n_world, e)
                 red, green, blue = red + part * colour[0], green + part * colour[1], blue + part * colour[2]
+                if shows:
+                    colour = mirrored(material, dot(n_world, e))
+                    red += part * colour[0] * lighting.sky[0]
+                    green += part * colour[1] * lighting.sky[1]
+                    blue += part * colour[2] * lighting.sky[2]
                 for l in range(len(lights)):
                     if work.light[l, 3] != 0.0:
                         colour = lit_by(lights[l], material, n_world, e, at)

@@ -31,6 +31,7 @@ from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
+from renderer.shading import any_mirror
 from renderer.tables import BARE, BASE, NOT_MINE, Floats, Pattern
 from renderer.trace import Truth
 
@@ -63,6 +64,7 @@ class Settings(NamedTuple):
 
     method: str
     samples: int
+    bounces: int
     seed: int
     texels: int
     tolerance: float
@@ -93,8 +95,8 @@ class Frame:
         methods = np.empty(tile.width * tile.height, np.uint8)
         if isinstance(self.model, Truth):
             self.model.render(
-                settings.samples, settings.seed, *tile, scene.camera, scene.lighting, scene.materials, scene.slots,
-                self.albedo, image, methods,
+                settings.samples, settings.bounces, settings.seed, *tile, scene.camera, scene.lighting, scene.materials,
+                scene.slots, self.albedo, image, methods,
             )  # fmt: skip
             self._put(tile, image, methods)
             return {"geometry": clock() - begin}
@@ -141,18 +143,19 @@ class Frame:
 
         start = time.perf_counter()
         if settings.method == "csg" and pattern is not BARE:
-            csg(settings.samples, 0.0, False, settings.seed, pattern, seen.footprints, chosen, *rest)
+            csg(settings.samples, settings.bounces, 0.0, False, settings.seed, pattern, seen.footprints, chosen, *rest)
             return timed("csg", start)
         if isinstance(self.model, Textures) and pattern is not BARE:
             relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
             return timed("relief", start)
+        bounces = settings.bounces > 0 and any_mirror(scene.materials, scene.slots[row])
         if settings.method in ("lines", "area") and pattern is not BARE:
             left = chosen
         else:
-            line(MODES.get(settings.method, LOOSE), pattern, seen.footprints, chosen, *rest)
+            line(MODES.get(settings.method, LOOSE), settings.bounces, pattern, seen.footprints, chosen, *rest)
             timed("line", start)
             left = chosen[method[chosen] == NOT_MINE]
-        if len(left) and settings.method in ("lines", "area", "auto"):
+        if len(left) and settings.method in ("lines", "area", "auto") and not bounces:  # else it is left to samples
             start = time.perf_counter()
             most = FEW_STRIPS if settings.method == "auto" else STRIPS
             flat, ordered = int(row) in self.flat, in_blocks(seen.footprints, left)
@@ -165,9 +168,21 @@ class Frame:
                 area_sampling(settings.tolerance, most, flat, pattern, seen.footprints, ordered, *rest)
             timed("lines" if settings.method == "lines" else "area", start)
             left = left[method[left] == NOT_MINE]
-        if len(left) and settings.method == "auto":  # with as many strips as there is room for, if samples do not do
+        if (
+            len(left) and settings.method == "auto" and not bounces
+        ):  # with as many strips as there is room for, if samples do not do
             start = time.perf_counter()
-            csg(settings.samples, settings.tolerance, True, settings.seed, pattern, seen.footprints, left, *rest)
+            csg(
+                settings.samples,
+                settings.bounces,
+                settings.tolerance,
+                True,
+                settings.seed,
+                pattern,
+                seen.footprints,
+                left,
+                *rest,
+            )
             timed("csg", start)
             left = in_blocks(seen.footprints, left[method[left] == NOT_MINE])
             start = time.perf_counter()
@@ -176,7 +191,17 @@ class Frame:
             left = left[method[left] == NOT_MINE]
         if len(left):
             start = time.perf_counter()
-            csg(settings.samples, settings.tolerance, False, settings.seed, pattern, seen.footprints, left, *rest)
+            csg(
+                settings.samples,
+                settings.bounces,
+                settings.tolerance,
+                False,
+                settings.seed,
+                pattern,
+                seen.footprints,
+                left,
+                *rest,
+            )
             timed("csg", start)
         return None
 
@@ -208,6 +233,7 @@ def render(
     settings = Settings(
         method,
         samples or scene.render.samples_of(method),
+        scene.render.bounces,
         scene.render.seed,
         texels or scene.render.texels,
         tolerance or scene.render.tolerance,
@@ -233,9 +259,9 @@ def render(
         start = time.perf_counter()
         solids = {} if solids is None else solids
         of = scene.model_dump_json(include={"objects", "patterns", "lights"})
-        key = f"{settings.method} {settings.texels} {scene.camera.origin} {of}"
+        key = f"{settings.method} {settings.texels} {settings.bounces} {scene.camera.origin} {of}"
         if key not in solids and settings.method == "geometry":
-            solids[key] = _truth(compiled)
+            solids[key] = _truth(compiled, settings.bounces)
         elif key not in solids:
             solids[key] = _textures(compiled, settings.texels, threads, cancelled)
         model = solids[key]
@@ -278,14 +304,17 @@ def _frame(compiled: CompiledScene, settings: Settings, model: Truth | Textures 
     )
 
 
-def _truth(compiled: CompiledScene) -> Truth:
+def _truth(compiled: CompiledScene, bounces: int) -> Truth:
     """The scene as real geometry."""
     bodies = []
     for row, obj in enumerate(compiled.objects):
         pattern = compiled.patterns[obj["pattern"]] if obj["pattern"] >= 0 else BARE
+        followed = bounces if any_mirror(compiled.materials, compiled.slots[row]) else 0
         try:
             bodies.append(
-                body.build(row, obj, pattern, compiled.triangles, compiled.camera.origin, compiled.lighting.lights)
+                body.build(
+                    row, obj, pattern, compiled.triangles, compiled.camera.origin, compiled.lighting.lights, followed
+                )
             )
         except ValueError as error:
             raise RenderError(Fault(f"/objects/{row}/pattern", "a pattern that can be meshed", str(error))) from None
@@ -411,7 +440,7 @@ def _try(method: str, shape: dict[str, object]) -> None:
     compiled = compile_scene(scene, (2, 2), PatternCache(), lambda _: _TRIANGLE)
     model: Truth | Textures | None = None
     if method == "geometry":
-        model = _truth(compiled)
+        model = _truth(compiled, 0)
     elif method == "relief":
         model = _textures(compiled, 16, 1, None)
-    _frame(compiled, Settings(method, 1, 0, 16, 0.01), model).tile(Tile(0, 0, 2, 2))
+    _frame(compiled, Settings(method, 1, 0, 0, 16, 0.01), model).tile(Tile(0, 0, 2, 2))

@@ -110,6 +110,31 @@ def reflect(material: np.void, n: Vector, e: Vector, to_light: Vector) -> Vector
 
 
 @leaf
+def mirrored(material: np.void, cosine: float) -> Vector:
+    """The part of radiance, RGB, that an ideal mirror sends on at this cosine to its normal; none of a rough one."""
+    if material.alpha > 0.0:
+        return 0.0, 0.0, 0.0
+    schlick = (1.0 - min(max(cosine, 0.0), 1.0)) ** 5
+    coat = (1.0 - material.metallic) * (material.f0 + (material.f90 - material.f0) * schlick)
+    base, m = material.base_color, material.metallic
+    return (
+        coat + m * (base[0] + (1.0 - base[0]) * schlick),
+        coat + m * (base[1] + (1.0 - base[1]) * schlick),
+        coat + m * (base[2] + (1.0 - base[2]) * schlick),
+    )
+
+
+@leaf
+def any_mirror(materials: NDArray[np.void], slots: NDArray[np.int32]) -> bool:
+    """Whether any of these rows of `materials` is an ideal mirror."""
+    some = False
+    for slot in slots:
+        material = materials[slot]
+        some = some or (material.alpha == 0.0 and (material.metallic > 0.0 or material.f90 > 0.0))
+    return some
+
+
+@leaf
 def lit_by(light: np.void, material: np.void, n: Vector, e: Vector, at: Vector) -> Vector:
     """Radiance to E that one unblocked light causes at the world point `at`."""
     v = light.vector
@@ -163,8 +188,10 @@ def ambient(material: np.void, sky: NDArray[np.float64], albedo: NDArray[np.floa
             glow[1] + diffuse * base[1] * sky[1],
             glow[2] + diffuse * base[2] * sky[2],
         )
-    plain = grazing = 0.0
-    if material.alpha > 0.0:
+    plain = grazing = coat = 0.0
+    if material.alpha == 0.0:  # the bounces see what the mirror shows
+        coat = material.f0 + (material.f90 - material.f0) * (1.0 - min(max(dot(n, e), 0.0), 1.0)) ** 5
+    else:
         last = albedo.shape[0] - 1
         x = min(max(dot(n, e), 0.0), 1.0) * last
         y = math.sqrt(material.alpha) * last
@@ -182,7 +209,7 @@ def ambient(material: np.void, sky: NDArray[np.float64], albedo: NDArray[np.floa
                 grazing = value
     dielectric = material.f0 * plain + (material.f90 - material.f0) * grazing
     # what the coat sends back does not reach the body; the Fresnel term's mean over the sky stands for it
-    diffuse *= 1.0 - dielectric
+    diffuse *= 1.0 - dielectric - coat
     dielectric *= 1.0 - material.metallic
     m = material.metallic
     return (

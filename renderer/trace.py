@@ -1,10 +1,11 @@
 """Method `geometry`: real geometry, traced by Embree with n stratified samples a pixel, each a ray of its own.
 
 The ground truth and the peer of the analytic methods: it shares no geometry with them, no footprints, frames or
-spans. Embree's single precision is finest where a body fills [-1, 1], so each is traced in a space of its own; what
-Embree finds is met again in double precision. Shadow rays start OFFSET off their triangle. Too small an offset makes
-facets shade themselves, too large a one lets light leak under ridges: the part of a groove's width that is wrongly
-lit at a shadow's edge is about OFFSET over that width, which for a groove of 1/250 of the body is 1e-4.
+spans. What an ideal mirror shows is traced on, as often as the scene says. Embree's single precision is finest where a
+body fills [-1, 1], so each is traced in a space of its own; what Embree finds is met again in double precision. Rays
+from a surface start OFFSET off their triangle. Too small an offset makes facets shade themselves, too large a one lets
+light leak under ridges: the part of a groove's width that is wrongly lit at a shadow's edge is about OFFSET over that
+width, which for a groove of 1/250 of the body is 1e-4.
 
 Normals are not those of the chords: facets swept along an arc have the arc's, and pattern space is carried into the
 world by the map's derivatives at the very point.
@@ -23,8 +24,8 @@ from numpy.typing import NDArray
 from renderer.body import Base, Body, facing
 from renderer.geometry.random import jitter, seed_of
 from renderer.kernel import kernel, leaf
-from renderer.shading import Vector, ambient, dot, lit_by, unit
-from renderer.tables import CYLINDER, GEOMETRY, MESH, POINT, RECTANGLE, Camera, Floats, Ints, Lighting
+from renderer.shading import Vector, ambient, dot, lit_by, mirrored, unit
+from renderer.tables import CYLINDER, GEOMETRY, MESH, NONE, POINT, RECTANGLE, Camera, Floats, Ints, Lighting
 
 OFFSET = 4e-7
 RAYS = 1 << 18  # traced at a time
@@ -42,6 +43,14 @@ class Hits(NamedTuple):
     point: Floats  # (n, 3) world
     normal: Floats  # (n, 3) world, unit: what light meets
     slot: Ints  # (n,) material slot: -1 the object's own
+
+
+def nowhere(count: int) -> Hits:
+    """Rays that have met nothing."""
+    return Hits(
+        np.full(count, np.inf), np.full(count, -1, np.int32), np.full(count, -1, np.int32), np.zeros(count, np.bool_),
+        np.zeros((count, 3)), np.zeros((count, 3)), np.full(count, -1, np.int32),
+    )  # fmt: skip
 
 
 class Traced:
@@ -64,50 +73,46 @@ class Traced:
             self._scene = EmbreeScene(robust=True)
             TriangleMesh(self._scene, self.corners.astype(np.float32))
 
-    def cast(self, index: int, origin: Floats, directions: Floats, hits: Hits) -> None:
-        """Enter itself as `index` where it is nearer than what `hits` has."""
-        if self.body.shape == RECTANGLE:
-            cross_window(index, self.body.window, self._inside(origin), self.dual, directions, hits)
-        else:
-            assert self._scene is not None
-            start = (self._inside(origin) - self.middle) * self.scale
-            inside = directions @ self.dual.T
-            origins = np.ascontiguousarray(np.broadcast_to(start.astype(np.float32), directions.shape))
-            row = self._first(origins, inside)
-            meet_shell(index, self.corners, self.normals, row, start, inside, self.scale, hits)
+    def cast(self, index: int, start: Hits, directions: Floats, hits: Hits) -> None:
+        """Enter itself as `index` where it is nearer than what `hits` has. Rays begin at the points of `start`."""
+        body = self.body
+        own = start.body == index
+        which = np.arange(len(directions))
+        if body.shape == RECTANGLE:
+            cross_window(index, body.window, body.origin, self.dual, start, directions, hits)
+            which = np.flatnonzero(own & ~start.back)  # from one place of its grooves to another
+        if self._scene is not None and len(which):
+            origins, inside, _ = self._leave(start, directions[which], np.inf, which, own[which])
+            row = self._first(origins.astype(np.float32), inside)
+            meet_triangles(
+                index, body.shape == RECTANGLE, which, body.origin, self.dual, self.corners, self.normals, self.middle,
+                self.scale, row, start.point, directions, hits,
+            )  # fmt: skip
 
-    def resolve(self, index: int, origin: Floats, directions: Floats, hits: Hits) -> None:
+    def resolve(self, index: int, start: Hits, directions: Floats, hits: Hits) -> None:
         """Find point, normal and slot of the hits that are its own."""
         which = np.flatnonzero(hits.body == index)
         body = self.body
-        if not len(which):
-            return
         if body.shape != RECTANGLE:
             place_on_shell(
                 which, body.origin, body.axes, self.corners, self.normals, self.middle, self.scale, body.normals,
-                body.coordinates, body.slot, body.bend, body.cell, body.base, origin, directions, hits,
+                body.coordinates, body.slot, body.bend, body.cell, body.base, start.point, directions, hits,
             )  # fmt: skip
             return
-        eye = self._inside(origin)
-        if self._scene is None or eye[2] <= 0.0:
-            place_on_plane(which, body.axes, origin, directions, hits)
-            return
-        origins, inside = np.empty((len(which), 3)), np.empty((len(which), 3))
-        shoot(
-            which,
-            eye,
-            self.dual,
-            max(self.top, 0.0) + 1e-3 / self.scale,
-            self.middle,
-            self.scale,
-            directions,
-            origins,
-            inside,
-        )
-        place_on_plate(
-            which, body.origin, body.axes, self.dual, self.corners, self.normals, self.middle, self.scale, body.slot,
-            body.bend, self._first(origins.astype(np.float32), inside), origins, inside, origin, directions, hits,
-        )  # fmt: skip
+        bare = hits.back[which] | (self._scene is None)
+        place_on_plane(which[bare], body.axes, start.point, directions, hits)
+        for own in (False, True):
+            part = which[~bare & ((start.body[which] == index) == own)]
+            if not len(part):
+                continue
+            origins, inside = np.empty((len(part), 3)), np.empty((len(part), 3))
+            top = math.inf if own else max(self.top, 0.0) + 1e-3 / self.scale
+            shoot(part, body.origin, self.dual, top, self.middle, self.scale, start.point, directions, origins, inside)
+            row = hits.triangle[part] if own else self._first(origins.astype(np.float32), inside)
+            place_on_plate(
+                part, body.origin, body.axes, self.dual, self.corners, self.normals, self.middle, self.scale, body.slot,
+                body.bend, row, origins, inside, start.point, directions, hits,
+            )  # fmt: skip
 
     def block(self, index: int, hits: Hits, towards: Floats, far: float, which: NDArray[np.int64]) -> Bools:
         """Whether it stands in the way (n,) from the points `which` of `hits` along far times `towards` (n, 3)."""
@@ -127,20 +132,23 @@ class Traced:
     ) -> Bools:
         """Whether its triangles are met. own: which of the points lie on it; all, where it is None."""
         assert self._scene is not None
+        origins, directions, lengths = self._leave(hits, towards, far, which, own)
+        found = self._scene.run(
+            origins.astype(np.float32), directions.astype(np.float32), lengths.astype(np.float32), query="OCCLUDED"
+        )
+        return np.asarray(found >= 0)
+
+    def _leave(
+        self, hits: Hits, towards: Floats, far: float, which: NDArray[np.int64], own: Bools | None
+    ) -> tuple[Floats, Floats, Floats]:
+        """Rays from hits[which] where the body is traced: origins, unit directions, lengths."""
         count = len(which)
         origins, directions, lengths = np.empty((count, 3)), np.empty((count, 3)), np.empty(count)
         leave(
             which, np.ones(count, np.bool_) if own is None else own, self.body.origin, self.dual, self.normals,
             self.middle, self.scale, OFFSET, far, towards, hits, origins, directions, lengths,
         )  # fmt: skip
-        found = self._scene.run(
-            origins.astype(np.float32), directions.astype(np.float32), lengths.astype(np.float32), query="OCCLUDED"
-        )
-        return np.asarray(found >= 0)
-
-    def _inside(self, point: Floats) -> Floats:
-        """A world point where the body is traced, but for the middle and the scale."""
-        return np.asarray(self.dual @ (point - self.body.origin))
+        return origins, directions, lengths
 
     def _first(self, origins: NDArray[np.float32], directions: Floats) -> Ints:
         assert self._scene is not None
@@ -155,40 +163,53 @@ class Truth:
         self.bytes = sum(body.bytes for body in bodies)
 
     def render(
-        self, samples: int, seed: int, x: int, y: int, width: int, height: int, camera: Camera, lighting: Lighting,
-        materials: NDArray[np.void], slots: tuple[NDArray[np.int32], ...], albedo: Floats, image: Floats,
-        method: NDArray[np.uint8],
+        self, samples: int, bounces: int, seed: int, x: int, y: int, width: int, height: int, camera: Camera,
+        lighting: Lighting, materials: NDArray[np.void], slots: tuple[NDArray[np.int32], ...], albedo: Floats,
+        image: Floats, method: NDArray[np.uint8],
     ) -> None:  # fmt: skip
         """Write the pixels of a tile: their radiance (n, 3) and method (n,).
 
-        samples: at least so many a pixel, in a grid of strata. slots: as CompiledScene.
+        samples: at least so many a pixel, in a grid of strata. bounces: so often mirrors are followed. slots: as
+        CompiledScene.
         """
         columns = math.ceil(math.sqrt(samples))
         rows = math.ceil(samples / columns)
         each = columns * rows
         names = np.concatenate(slots) if slots else np.zeros(0, np.int32)
-        start = np.cumsum([0, *(len(slot) for slot in slots)])[[traced.body.row for traced in self.bodies]]
+        first = np.cumsum([0, *(len(slot) for slot in slots)])[[traced.body.row for traced in self.bodies]]
         batch = max(RAYS // each, 1)
         for begin in range(0, width * height, batch):
             stop = min(begin + batch, width * height)
             count = (stop - begin) * each
             directions = np.empty((count, 3))
             rays(camera, x, y, width, begin, columns, rows, seed, directions)
-            hits = Hits(
-                np.full(count, np.inf), np.full(count, -1, np.int32), np.full(count, -1, np.int32),
-                np.zeros(count, np.bool_), np.zeros((count, 3)), np.zeros((count, 3)), np.full(count, -1, np.int32),
-            )  # fmt: skip
-            for index, traced in enumerate(self.bodies):
-                traced.cast(index, camera.origin, directions, hits)
-            for index, traced in enumerate(self.bodies):
-                traced.resolve(index, camera.origin, directions, hits)
-            lit = np.zeros((len(lighting.lights), count), np.bool_)
-            for row, light in enumerate(lighting.lights):
-                lit[row] = self._lit(light, hits)
-            gather(
-                lighting, materials, names, start.astype(np.int64), albedo, each, directions, hits, lit,
-                image[begin:stop], method[begin:stop],
-            )  # fmt: skip
+            start = nowhere(count)
+            start.point[:] = camera.origin
+            pixel = np.repeat(np.arange(begin, stop), each)
+            weight = np.full((count, 3), 1.0 / each)
+            for bounce in range(bounces + 1):
+                hits = self._meet(start, directions)
+                if bounce == 0:
+                    method[begin:stop] = np.where((hits.body >= 0).reshape(-1, each).any(1), GEOMETRY, NONE)
+                lit = np.zeros((len(lighting.lights), len(directions)), np.bool_)
+                for row, light in enumerate(lighting.lights):
+                    lit[row] = self._lit(light, hits)
+                gather(lighting, materials, names, first, albedo, directions, pixel, weight, hits, lit, image)
+                if bounce < bounces:
+                    which = np.flatnonzero(reflect(materials, names, first, directions, weight, hits))
+                    if not len(which):
+                        break
+                    start = Hits._make(column[which] for column in hits)
+                    directions, weight, pixel = directions[which], weight[which], pixel[which]
+
+    def _meet(self, start: Hits, directions: Floats) -> Hits:
+        """What rays from the points of `start` meet."""
+        hits = nowhere(len(directions))
+        for index, traced in enumerate(self.bodies):
+            traced.cast(index, start, directions, hits)
+        for index, traced in enumerate(self.bodies):
+            traced.resolve(index, start, directions, hits)
+        return hits
 
     def _lit(self, light: np.void, hits: Hits) -> Bools:
         """Which of the hits a light reaches."""
@@ -232,9 +253,15 @@ def turned(m: Floats, v: Vector) -> Vector:
 
 
 @kernel
-def cross_window(index: int, window: Floats, eye: Floats, dual: Floats, directions: Floats, hits: Hits) -> None:
-    """A rectangle where rays from `eye` (pattern space) cross it nearer than what they have met."""
+def cross_window(
+    index: int, window: Floats, origin: Floats, dual: Floats, start: Hits, directions: Floats, hits: Hits
+) -> None:
+    """A rectangle where rays that do not begin on it cross it nearer than what they have met."""
     for k in range(len(directions)):
+        if start.body[k] == index:
+            continue
+        at = start.point[k]
+        eye = turned(dual, (at[0] - origin[0], at[1] - origin[1], at[2] - origin[2]))
         d = turned(dual, (directions[k, 0], directions[k, 1], directions[k, 2]))
         if d[2] == 0.0:
             continue
@@ -271,40 +298,49 @@ def reached(n: Floats, corner: Floats, origin: Floats, direction: Vector) -> flo
 
 
 @kernel
-def meet_shell(
-    index: int, corners: Floats, normals: Floats, row: Ints, start: Floats, directions: Floats, scale: float, hits: Hits
-) -> None:
-    """The triangles `row` (n,) that Embree found where they are nearer than what the rays have met."""
-    for k in range(len(row)):
-        if row[k] < 0:
+def meet_triangles(
+    index: int, plate: bool, which: NDArray[np.int64], place: Floats, dual: Floats, corners: Floats, normals: Floats,
+    middle: Floats, scale: float, row: Ints, points: Floats, directions: Floats, hits: Hits,
+) -> None:  # fmt: skip
+    """The triangles `row` that Embree found for the rays `which`, where they are nearer than what the rays have met."""
+    x = np.empty(3)
+    for j in range(len(which)):
+        if row[j] < 0:
             continue
-        d = (directions[k, 0], directions[k, 1], directions[k, 2])
-        n = normals[row[k]]
-        t = reached(n, corners[row[k], 0], start, d) / scale
-        if 0.0 < t < hits.t[k]:
-            hits.t[k], hits.body[k], hits.triangle[k] = t, index, row[k]
-            hits.back[k] = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0
+        k = which[j]
+        at = points[k]
+        inside = turned(dual, (at[0] - place[0], at[1] - place[1], at[2] - place[2]))
+        for c in range(3):
+            x[c] = (inside[c] - middle[c]) * scale
+        d = turned(dual, (directions[k, 0], directions[k, 1], directions[k, 2]))
+        n = normals[row[j]]
+        back = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0
+        t = reached(n, corners[row[j], 0], x, d) / scale
+        if 0.0 < t < hits.t[k] and not (plate and back):
+            hits.t[k], hits.body[k], hits.triangle[k], hits.back[k] = t, index, row[j], back
 
 
 @kernel
-def place_on_plane(which: NDArray[np.int64], axes: Floats, origin: Floats, directions: Floats, hits: Hits) -> None:
+def place_on_plane(which: NDArray[np.int64], axes: Floats, points: Floats, directions: Floats, hits: Hits) -> None:
     """The hits on a bare rectangle, or on the back of one."""
     n = unit((axes[0, 2], axes[1, 2], axes[2, 2]))
     for k in which:
         sign = -1.0 if hits.back[k] else 1.0
         for c in range(3):
-            hits.point[k, c] = origin[c] + hits.t[k] * directions[k, c]
+            hits.point[k, c] = points[k, c] + hits.t[k] * directions[k, c]
             hits.normal[k, c] = sign * n[c]
 
 
 @kernel
 def shoot(
-    which: NDArray[np.int64], eye: Floats, dual: Floats, top: float, middle: Floats, scale: float, directions: Floats,
-    origins: Floats, inside: Floats,
+    which: NDArray[np.int64], place: Floats, dual: Floats, top: float, middle: Floats, scale: float, points: Floats,
+    directions: Floats, origins: Floats, inside: Floats,
 ) -> None:  # fmt: skip
-    """Rays for a plate's solid, where it is traced, from just above its highest point; directions are unit vectors."""
+    """Rays for a plate's solid, where it is traced, from no higher than `top`; directions are unit vectors."""
     for j in range(len(which)):
         k = which[j]
+        at = points[k]
+        eye = turned(dual, (at[0] - place[0], at[1] - place[1], at[2] - place[2]))
         d = turned(dual, (directions[k, 0], directions[k, 1], directions[k, 2]))
         t = max((top - eye[2]) / d[2], 0.0) if d[2] < 0.0 else 0.0
         length = math.sqrt(dot(d, d))
@@ -327,7 +363,7 @@ def bent(normal: Floats, bend: Floats, p: float, q: float) -> Vector:
 @kernel
 def place_on_plate(
     which: NDArray[np.int64], corner: Floats, axes: Floats, dual: Floats, corners: Floats, normals: Floats,
-    middle: Floats, scale: float, slot: Ints, bend: Floats, row: Ints, origins: Floats, inside: Floats, origin: Floats,
+    middle: Floats, scale: float, slot: Ints, bend: Floats, row: Ints, origins: Floats, inside: Floats, points: Floats,
     directions: Floats, hits: Hits,
 ) -> None:  # fmt: skip
     """The hits on a plate's solid; where there is none the plane stands for it."""
@@ -349,7 +385,7 @@ def place_on_plate(
             hits.triangle[k], hits.slot[k] = row[j], slot[row[j]]
         else:
             for c in range(3):
-                hits.point[k, c] = origin[c] + hits.t[k] * directions[k, c]
+                hits.point[k, c] = points[k, c] + hits.t[k] * directions[k, c]
         world = unit(
             (
                 n[0] * dual[0, 0] + n[1] * dual[1, 0] + n[2] * dual[2, 0],
@@ -447,7 +483,7 @@ def on_mesh(base: Base, cell: int, normal: Floats, bend: Floats, v: float, w: fl
 def place_on_shell(
     which: NDArray[np.int64], place: Floats, axes: Floats, corners: Floats, normals: Floats, middle: Floats,
     scale: float, patterned: Floats, coordinates: Floats, slot: Ints, bend: Floats, cell: Ints, base: Base,
-    origin: Floats, directions: Floats, hits: Hits,
+    points: Floats, directions: Floats, hits: Hits,
 ) -> None:  # fmt: skip
     """The hits on a curved body. Seen from behind a surface is bare."""
     bare, straight = np.array([0.0, 0.0, 1.0]), np.zeros(4)
@@ -456,7 +492,7 @@ def place_on_shell(
         n = (normals[row, 0], normals[row, 1], normals[row, 2])
         at = np.empty(3)
         for c in range(3):
-            at[c] = origin[c] + hits.t[k] * directions[k, c]
+            at[c] = points[k, c] + hits.t[k] * directions[k, c]
             hits.point[k, c] = at[c]
         if cell[row] >= 0:
             # Where in the triangle, and so where in pattern space.
@@ -521,7 +557,7 @@ def leave(
     which: NDArray[np.int64], own: Bools, place: Floats, dual: Floats, normals: Floats, middle: Floats, scale: float,
     offset: float, far: float, towards: Floats, hits: Hits, origins: Floats, directions: Floats, lengths: Floats,
 ) -> None:  # fmt: skip
-    """Rays from hits, where a body is traced: unit directions and how far they go."""
+    """Rays from hits, where a body is traced: origins, off the surface where it is `own`, unit directions, lengths."""
     for j in range(len(which)):
         k = which[j]
         at = hits.point[k]
@@ -542,27 +578,45 @@ def leave(
 
 @kernel
 def gather(
-    lighting: Lighting, materials: NDArray[np.void], names: Ints, start: NDArray[np.int64], albedo: Floats, each: int,
-    directions: Floats, hits: Hits, lit: Bools, image: Floats, method: NDArray[np.uint8],
+    lighting: Lighting, materials: NDArray[np.void], names: Ints, first: NDArray[np.int64], albedo: Floats,
+    directions: Floats, pixel: NDArray[np.int64], weight: Floats, hits: Hits, lit: Bools, image: Floats,
 ) -> None:  # fmt: skip
-    """Shade the samples and write the pixels' means. names: material rows of all bodies, each from `start` on."""
+    """Add what the rays see to their pixels. names: material rows of all bodies, each from `first` on."""
     lights, sky = lighting.lights, lighting.sky
-    for j in range(len(image)):
-        red = green = blue = 0.0
-        method[j] = 0
-        for k in range(j * each, (j + 1) * each):
-            if hits.body[k] < 0:
-                red, green, blue = red + sky[0], green + sky[1], blue + sky[2]
-                continue
-            method[j] = GEOMETRY
+    for k in range(len(directions)):
+        red, green, blue = sky[0], sky[1], sky[2]
+        if hits.body[k] >= 0:
             n = (hits.normal[k, 0], hits.normal[k, 1], hits.normal[k, 2])
             at = (hits.point[k, 0], hits.point[k, 1], hits.point[k, 2])
             e = unit((-directions[k, 0], -directions[k, 1], -directions[k, 2]))
-            material = materials[names[start[hits.body[k]] + hits.slot[k] + 1]]
-            colour = ambient(material, sky, albedo, n, e)
-            red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
+            material = materials[names[first[hits.body[k]] + hits.slot[k] + 1]]
+            red, green, blue = ambient(material, sky, albedo, n, e)
             for l in range(len(lights)):
                 if lit[l, k]:
                     colour = lit_by(lights[l], material, n, e, at)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
-        image[j, 0], image[j, 1], image[j, 2] = red / each, green / each, blue / each
+        image[pixel[k], 0] += weight[k, 0] * red
+        image[pixel[k], 1] += weight[k, 1] * green
+        image[pixel[k], 2] += weight[k, 2] * blue
+
+
+@kernel
+def reflect(
+    materials: NDArray[np.void], names: Ints, first: NDArray[np.int64], directions: Floats, weight: Floats, hits: Hits
+) -> Bools:
+    """Which rays a mirror sends on; their directions and weights are made those of the reflected ones."""
+    goes = np.zeros(len(directions), np.bool_)
+    for k in range(len(directions)):
+        if hits.body[k] < 0:
+            continue
+        n = (hits.normal[k, 0], hits.normal[k, 1], hits.normal[k, 2])
+        e = unit((-directions[k, 0], -directions[k, 1], -directions[k, 2]))
+        cosine = dot(n, e)
+        colour = mirrored(materials[names[first[hits.body[k]] + hits.slot[k] + 1]], cosine)
+        if cosine <= 0.0 or max(colour[0], colour[1], colour[2]) <= 0.0:
+            continue
+        goes[k] = True
+        for c in range(3):
+            directions[k, c] = 2.0 * cosine * n[c] - e[c]
+            weight[k, c] *= colour[c]
+    return goes

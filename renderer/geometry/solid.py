@@ -32,14 +32,18 @@ from renderer.geometry.spans import (
     meet_piece,
     sort,
 )
-from renderer.kernel import leaf
+from renderer.kernel import fixed, leaf
 from renderer.tables import PROFILE, SCALE_CONSTANT, Pattern
 
 SEARCH = 1024
 """Stretches of a shadow ray that are looked at: all that a pattern has, and of one that tiles for ever so many tiles
 that a ray which has met nothing there runs along free lanes."""
 
+LEVEL = 1e-6  # a ray's slope to the plane is taken for at least this
 THIN = 1e-7  # solid thinner than this part of the pattern's height range, or width, is rounding, not matter
+
+
+DOWN, UP, SHADOW = fixed(0), fixed(1), fixed(2)  # where a ray goes
 
 
 class Meeting(NamedTuple):
@@ -97,14 +101,47 @@ def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[floa
 
 
 @leaf
+def last(e: Events, n: int, high: float, low: float, thin: float) -> tuple[float, int, int]:
+    """The same for a ray on its way up: where the solid that it meets first begins."""
+    for rank in range(len(e.open)):
+        e.open[rank, 0] = e.open[rank, 1] = e.open[rank, 2] = 0
+    below = high <= 0.0
+    sort(e, n)
+    found, owner, what = -math.inf, -1, PLANE
+    solid = False  # where the ray ends, it is not stopped
+    k = 0
+    while k < n or not below:
+        at = e.w[e.order[k]] if k < n else -math.inf
+        if not below and at <= 0.0:
+            at = 0.0
+        if at <= low + thin:
+            break
+        below = below or at <= thin
+        until = at - thin
+        facet, by = PLANE, -1
+        while k < n and e.w[e.order[k]] >= until:
+            sign, kind, rank = e.change[e.order[k], 0], e.change[e.order[k], 1], e.change[e.order[k], 2]
+            e.open[rank, kind] += sign
+            if e.change[e.order[k], 3] >= 0 or facet < 0:
+                facet, by = e.change[e.order[k], 3], e.change[e.order[k], 4]
+            k += 1
+        now = is_solid(e, below)
+        if solid and not now:
+            found, what, owner = at, facet, by
+        solid = now
+    return found, what, owner
+
+
+@leaf
 def meet(
     pattern: Pattern, found: Nearby, e: Events, count: int, p: float, q: float, gp: float, gq: float,
-    high: float, low: float, upwards: bool,
+    high: float, low: float, way: int,
 ) -> Meeting:  # fmt: skip
     """Where the ray through (p, q) with slope (gp, gq) first enters the solid between the heights `high` and `low`.
 
-    `count` pieces have been found for the whole footprint; where -1, the ray looks for them itself, stretch by
-    stretch: from above, or from below for a shadow, which asks only whether there is anything. w = -inf: nothing.
+    way: it goes DOWN or UP, or it is a SHADOW's, which goes up and asks only whether there is anything. `count` pieces
+    have been found for the whole footprint; where -1, the ray looks for them itself, stretch by stretch. w = -inf:
+    nothing.
     """
     thin = THIN * (pattern.height + pattern.depth)
     slope = math.hypot(gp, gq)
@@ -115,8 +152,8 @@ def meet(
         travel = slope * (high - low)
         stride = 2.0 * max(pattern.grid.cell[0], pattern.grid.cell[1]) + pattern.reach
         stretches = int(min(max(math.ceil(travel / stride), 1.0), 1e6))
-    for k in range(min(stretches, SEARCH) if upwards else stretches):
-        j = stretches - 1 - k if upwards else k
+    for k in range(min(stretches, SEARCH) if way != DOWN else stretches):
+        j = stretches - 1 - k if way != DOWN else k
         a = high + (low - high) * j / stretches
         c = high + (low - high) * (j + 1) / stretches
         pieces = count
@@ -158,7 +195,10 @@ def meet(
                 if max(x * x + y * y, (x + mx) ** 2 + (y + my) ** 2) < inner * inner:
                     continue
             n = meet_piece(pattern, e, n, i, item, dx, dy, p, q, gp, gq, a, c)
-        w, facet, owner = first(e, n, a, c, thin)
+        if way == UP:
+            w, facet, owner = last(e, n, a, c, thin)
+        else:
+            w, facet, owner = first(e, n, a, c, thin)
         if w > -math.inf:
             return Meeting(w, facet, owner // PARTS if owner >= 0 else -1, owner % PARTS if owner >= 0 else 0)
     return OPEN
@@ -283,3 +323,31 @@ def lean(piece: np.void, profile: np.void, part: int, s: float, b: float) -> flo
     if b > 0.0:
         return outward
     return -outward / left if left > 0.0 else 0.0
+
+
+@leaf
+def is_lit(
+    pattern: Pattern, found: Nearby, e: Events, count: int, light: tuple[float, float, float, float],
+    x: float, y: float, w: float,
+) -> bool:  # fmt: skip
+    """Whether nothing stands between a point off the surface and a light (D_p, D_q, D_w, h)."""
+    high, low = pattern.height, -pattern.depth
+    thin = 1e-6 * (high - low) + 1e-300
+    gp, gq, rise = light[0] - light[3] * x, light[1] - light[3] * y, light[2] - light[3] * w
+    rise = leveled(gp, gq, rise)
+    gp, gq = gp / rise, gq / rise
+    roof = high + thin if light[3] == 0.0 else min(high + thin, w + rise)
+    if rise < 0.0:
+        m = meet(pattern, found, e, count, x - w * gp, y - w * gq, gp, gq, w, w + rise, DOWN)
+    elif roof > w:
+        m = meet(pattern, found, e, count, x - w * gp, y - w * gq, gp, gq, roof, w, SHADOW)
+    else:
+        m = OPEN
+    return m.w == -math.inf
+
+
+@leaf
+def leveled(gp: float, gq: float, rise: float) -> float:
+    """The height that a ray gains along (gp, gq), a little where it is level: rays are followed by height."""
+    level = LEVEL * math.hypot(gp, gq)
+    return math.copysign(level, rise) if abs(rise) < level else rise

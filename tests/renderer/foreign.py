@@ -51,7 +51,7 @@ def parts(scene: schema.Scene) -> list[Part]:
         corners, slot = _plate(item, pattern)
     else:
         made = body.build(
-            0, compiled.objects[0], pattern, compiled.triangles, compiled.camera.origin, compiled.lighting.lights
+            0, compiled.objects[0], pattern, compiled.triangles, compiled.camera.origin, compiled.lighting.lights, 0
         )
         corners, slot = made.origin + made.corners @ made.axes.T, made.slot
         normals = np.where(made.cell[:, None, None] < 0, body.facing(corners)[:, None], _carried(made) @ made.axes.T)

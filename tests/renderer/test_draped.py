@@ -234,7 +234,7 @@ def test_it_is_what_is_rendered(compiled: Callable[..., CompiledScene]) -> None:
     """
     soup, scale = SHAPES["sphere"]
     scene = compiled(soup, ACROSS + SEAM, scale)
-    rendered = truth.build(0, scene.objects[0], scene.patterns[0], scene.triangles, np.zeros(3), np.zeros(0, LIGHT))
+    rendered = truth.build(0, scene.objects[0], scene.patterns[0], scene.triangles, np.zeros(3), np.zeros(0, LIGHT), 0)
     count = 3 * len(rendered.corners)
     theirs = trimesh.Trimesh(rendered.corners.reshape(-1, 3), np.arange(count).reshape(-1, 3), process=False)
     draw = np.random.default_rng(0)
