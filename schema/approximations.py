@@ -77,11 +77,7 @@ def left_out(scene: Scene) -> Iterator[Problem]:
     for index, light in enumerate(scene.lights):
         if isinstance(light, EnvmapLight):
             yield _warning(("lights", index), "a light that is rendered", "an envmap: not rendered yet, left out")
-    if scene.render.bounces > 0:
-        found = f"{scene.render.bounces}: only direct light is rendered yet"
-        yield _warning(("render", "bounces"), "0", found)
-    else:
-        yield from _bounces_wanted(scene)
+    yield from _not_followed(scene) if scene.render.bounces > 0 else _bounces_wanted(scene)
 
 
 def _bounces_wanted(scene: Scene) -> Iterator[Problem]:
@@ -93,6 +89,23 @@ def _bounces_wanted(scene: Scene) -> Iterator[Problem]:
         if material.roughness == 0 and _has_mirror(material):
             found = "0: an ideal mirror is seen by bounces alone, and there are none"
             yield _warning(("materials", name, "roughness"), "more than 0, as render.bounces is 0", found)
+
+
+def _not_followed(scene: Scene) -> Iterator[Problem]:
+    used = sorted(_used_materials(scene))
+    for name in used:
+        material = scene.materials[name]
+        if material.transmission > 0 and material.metallic < 1:
+            found = f"{material.transmission:g}: refraction is not followed yet, left out"
+            yield _warning(("materials", name, "transmission"), "0", found)
+    count = scene.render.bounces
+    mirrors = any(scene.materials[name].roughness == 0 and _has_mirror(scene.materials[name]) for name in used)
+    if not mirrors:
+        found = f"{count}: light is followed from ideal mirrors alone yet, of roughness 0, and there are none"
+        yield _warning(("render", "bounces"), "0", found)
+    elif len(scene.objects) > 1 and scene.render.method != "geometry":
+        found = f"{count}: mirrors show their own object and the sky yet, and other objects by method geometry alone"
+        yield _warning(("render", "bounces"), "0, or one object", found)
 
 
 def _has_mirror(material: Material) -> bool:

@@ -103,7 +103,12 @@ class Render(Model):
         description="Texels along the longer side of method relief's texture: of a surface, with a margin, or of one "
         "tile. Default: 1024.",
     )
-    bounces: int = Field(default=0, ge=0, le=16, description="How often light is followed on. Default: 0.")
+    bounces: int = Field(
+        default=0,
+        ge=0,
+        le=16,
+        description="How often light is followed on, from ideal mirrors (roughness 0). Default: 0.",
+    )
     tolerance: float = Field(
         default=0.002,
         ge=1e-5,

@@ -62,10 +62,21 @@ def test_envmap_is_left_out(scene: dict[str, Any]) -> None:
     assert str(warning) == "/lights/0: expected a light that is rendered, found an envmap: not rendered yet, left out"
 
 
-def test_bounces_are_not_followed_yet(scene: dict[str, Any]) -> None:
+def test_bounces_follow_mirrors_alone(scene: dict[str, Any]) -> None:
     scene["render"]["bounces"] = 2
     (warning,) = check(scene).warnings
-    assert str(warning) == "/render/bounces: expected 0, found 2: only direct light is rendered yet"
+    assert str(warning) == (
+        "/render/bounces: expected 0, found 2: light is followed from ideal mirrors alone yet, of roughness 0, and "
+        "there are none"
+    )
+    scene["objects"][0]["material"] = "glass"
+    assert warnings(scene) == ["/materials/glass/transmission"]
+    scene["materials"]["glass"]["transmission"] = 0
+    assert warnings(scene) == []
+    scene["objects"].append(scene["objects"][0] | {"translate": [0, 0, 1]})
+    assert warnings(scene) == ["/render/bounces"]
+    scene["render"]["method"] = "geometry"
+    assert warnings(scene) == []
 
 
 def test_mirrors_and_glass_want_bounces(scene: dict[str, Any]) -> None:
