@@ -15,7 +15,9 @@ What remains is perspective, under which what is seen changes along the footprin
 it, as a part of d, an end of a facet that comes into sight there makes an error of at most c / 8, the most that the
 middle is wrong by for max(0, x - t). Where that is too much, a run is seen at two places of it, m +- s with m its
 middle and s^2 = (n^2 - 1) / 12, each for half of the run: the sum of any cubic in k. They are wrong by 0.0223 c, and by
-1 / j^2 of it where the run is cut into j. Smooth changes leave squares and fourth powers.
+1 / j^2 of it where the run is cut into j. Smooth changes leave squares and fourth powers. Where the mean is taken, the
+footprint is cut into equal parts instead, and one period in the middle of each one's share stands for it: j of them are
+wrong by c / (8 j^2).
 
 In a row of equal ridges none is hidden or shaded by the second next that is not by the next: a ray towards an eye or a
 light passes over it higher up. So each period is laid out with one to the left and one to the right.
@@ -31,6 +33,7 @@ import numpy as np
 from renderer.geometry.pieces import is_beyond, locate
 from renderer.geometry.query import Nearby, find_in
 from renderer.geometry.reach import STRAIGHT, TURNED, Reach
+from renderer.geometry.section import along
 from renderer.geometry.view import View, on_plane
 from renderer.kernel import fixed, leaf
 from renderer.tables import Floats, Pattern
@@ -308,17 +311,25 @@ def fold(
     if last - first + 1.0 < MANY:
         return 0, 0
     inside = first > 0.0 and last < end
+    a, b = abs(extent(view, r, 1.0, 0.5)), abs(extent(view, r, 0.5, 1.0))
+    smooth = d * d <= EVEN * 3.0 * 4.0 * a * b
     if change <= ONE and skew <= FLAT_ENOUGH and (inside or pattern.height == 0.0):
         amid = min(max(-zero / d - 0.5, first), last)
         n = put(pattern, family, amid, 1.0, axis, r, near, 0)
-        a, b = abs(extent(view, r, 1.0, 0.5)), abs(extent(view, r, 0.5, 1.0))
-        if inside and d * d <= EVEN * 3.0 * 4.0 * a * b:
+        if inside and smooth:
             sums[0, 0], sums[0, 1] = 0.0, 1.0 / d
             return n if n <= len(near) else 0, 0
         m = periods(family, view, r, zero, before, after, first, last, 0.0, sums, rims)
         for i in range(m):
             sums[i, 0] = (sums[i, 0] - amid) * d
         return n if n <= len(near) and m > 1 else 0, m
+    if inside and smooth:
+        cuts = math.ceil(max(math.sqrt(change * 0.125 / KINK), 2.0 * skew / SKEW, 2.0))
+        if not cuts <= 2.0 * RUNS:
+            return 0, 0
+        sums[0, 0], sums[0, 1] = 0.0, 1.0 / d
+        n = spread_out(pattern, family, view, r, axis, zero, int(cuts), near)
+        return n if n <= len(near) else 0, 0
     cuts = math.ceil(max(math.sqrt(change * 0.0223 / KINK), skew / SKEW, 1.0))
     if not cuts <= RUNS:
         return 0, 0
@@ -330,6 +341,27 @@ def fold(
         n = put(pattern, family, sums[i, 0], sums[i, 1], axis, r, near, n)
     sums[0, 0], sums[0, 1] = 0.0, 1.0
     return n if n <= len(near) else 0, 1
+
+
+@leaf
+def spread_out(
+    pattern: Pattern, family: np.void, view: View, r: Reach, axis: float, zero: float, cuts: int, near: Any
+) -> int:
+    """Fill `near` with a period in each of so many equal parts of the footprint, which stands for the share of the
+    footprint that lies there, where that is in the mean: the rows in use."""
+    bx, by = -r.ty, r.tx
+    centre = bx * view.p + by * view.q
+    step = (r.high - r.low) / cuts
+    before, n = 0.0, 0
+    for i in range(cuts):
+        x = r.low + i * step
+        half, after = along(view, bx, by, centre + x + 0.5 * step), along(view, bx, by, centre + x + step)
+        mass = after - before
+        if mass > 0.0:  # Simpson's rule for the integral of the share up to each place
+            amid = x + step * (after - (before + 4.0 * half + after) / 6.0) / mass
+            n = put(pattern, family, (amid - zero) / family.period - 0.5, mass, axis, r, near, n)
+        before = after
+    return n
 
 
 @leaf
