@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.colour import EVEN, colour_over, sharpness, turns
+from renderer.geometry.curve import is_curved, straightened
 from renderer.geometry.faces import Faces
 from renderer.geometry.local import BLOCKS, FULL, local_of
 from renderer.geometry.polygon import CORNERS, Counts, area, subtract
@@ -49,6 +50,7 @@ LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 0.1  # in tolerances: the shares of a footprint sum to one within this, or it is left to another method
 CHORDED = 2.0  # ... where chords stand for arcs and steps for scales; shares are divided by their sum
 SHARE = 0.1  # of the tolerance, that the colour of one part may use up
+BOWED = 0.1  # the error over a curved base, in parts of what slopes are changed by to make up for it (measured)
 BENT = 0.5  # the error where chords stand for arcs, in tolerances
 
 
@@ -165,10 +167,15 @@ def area_sampling(
         footprint = footprints[index]
         frame = frames[footprint.frame]
         method[index] = NOT_MINE
+        view = view_of(footprint, frame, camera)
+        bowed = 0.0
+        if is_curved(frame):
+            bowed = BOWED * straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
+            if not bowed <= tolerance:
+                continue
         if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:
             continue
         red = green = blue = whole = off = 0.0
-        view = view_of(footprint, frame, camera)
         long = turns(frame, view, lights, turn)
         bright = white(lighting, to_world(frame, view.p, view.q, 0.0))
         cost = faces.made[0] + (local.strips.made[0] * footprint.size / square.size) ** 2
@@ -191,7 +198,7 @@ def area_sampling(
             bent = bend > 0.0
             chorded = chorded or bent
             cost += seen.aways[eye]
-            plain = distant and not bent and is_plain(material)
+            plain = distant and not bent and is_plain(material) and not is_curved(frame)
             if plain:
                 tinge(f, square, pattern, frame, lighting, material, albedo, found, faces, seen)
             for source in range(eye, -1, -1):
@@ -231,7 +238,7 @@ def area_sampling(
                 break
         if not room or not abs(whole - 1.0) <= tolerance * (CHORDED if chorded else WHOLE):
             continue
-        error = abs(whole - 1.0) + (BENT * tolerance if chorded else 0.0)
+        error = abs(whole - 1.0) + bowed + (BENT * tolerance if chorded else 0.0)
         if off > 0.0:
             off /= bright
             if not off <= tolerance:

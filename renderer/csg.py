@@ -13,6 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.curve import is_curved, light_over, sight_over, turned, unsure
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.rays import follow
@@ -71,6 +72,7 @@ def csg(
         frame = frames[footprint.frame]
         view = view_of(footprint, frame, camera)
         method[index] = CSG
+        curved = is_curved(frame)
         dw = frame.eye[2]
         top = min(high + thin, dw * (1.0 - 1e-9))
 
@@ -79,12 +81,21 @@ def csg(
         for k in range(4):
             cp, cq = on_plane(view, float(k & 1), float(k >> 1))
             gp, gq = (frame.eye[0] - cp) / dw, (frame.eye[1] - cq) / dw
+            if curved:
+                cp, cq, gp, gq = sight_over(frame, cp, cq, gp, gq, top, low - thin)
             for w in (low, top):
                 p0, p1 = min(p0, cp + w * gp), max(p1, cp + w * gp)
                 q0, q1 = min(q0, cq + w * gq), max(q1, cq + w * gq)
         fp0, fp1, fq0, fq1 = p0, p1, q0, q1
+        apart = False  # what light must pass is not the same all over the footprint
         for l in range(len(lights)):
-            d = light_to_pattern(frame, lights[l])
+            d = light_over(pattern, frame, lights[l], view.p, view.q, low, high)
+            if curved:
+                for k in range(4):
+                    cp, cq = on_plane(view, float(k & 1), float(k >> 1))
+                    c = light_over(pattern, frame, lights[l], cp, cq, low, high)
+                    apart = apart or (c[2] > 0.0) != (d[2] > 0.0)
+                    d = (d[0], d[1], min(d[2], c[2]), d[3])
             if d[2] > 0.0 and d[3] == 0.0:
                 gp, gq = (high - low) * d[0] / d[2], (high - low) * d[1] / d[2]
                 fp0, fp1, fq0, fq1 = min(fp0, p0 + gp), max(fp1, p1 + gp), min(fq0, q0 + gq), max(fq1, q1 + gq)
@@ -94,6 +105,8 @@ def csg(
                 fq0, fq1 = min(fq0, q0 + way * (d[1] - q0)), max(fq1, q1 + way * (d[1] - q1))
         margin = pattern.reach
         shared = find(pattern, found, fp0 - margin, fq0 - margin, fp1 + margin, fq1 + margin, SHARED)
+        if apart:
+            shared = -1
 
         across = int(math.ceil(math.sqrt(samples)))
         down = (samples + across - 1) // across
@@ -124,6 +137,8 @@ def csg(
                     u, v = (i % across + ju) / across, (i // across + jv) / down
                 p, q = on_plane(view, u, v)
                 gp, gq = (frame.eye[0] - p) / dw, (frame.eye[1] - q) / dw
+                if curved:
+                    p, q, gp, gq = sight_over(frame, p, q, gp, gq, top, low - thin)
                 m = meet(pattern, found, spans, shared, p, q, gp, gq, top, low - thin, DOWN)
                 at = max(polish(pattern, found, m, p, q, gp, gq), low)
                 x, y = p + at * gp, q + at * gq
@@ -136,7 +151,8 @@ def csg(
                 else:
                     item = -1
                 material = materials[slots[slot]]
-                n_world = normal_to_world(frame, n)
+                facing = turned(frame, x - frame.pq[0], y - frame.pq[1], at, n) if curved else n
+                n_world = normal_to_world(frame, facing)
                 at_world = to_world(frame, x, y, at)
                 e = unit((eye[0] - at_world[0], eye[1] - at_world[1], eye[2] - at_world[2]))
                 colour = ambient(material, lighting.sky, albedo, n_world, e)
@@ -149,7 +165,11 @@ def csg(
                         continue
                     d = light_to_pattern(frame, lights[l])
                     lp, lq, lw = d[0] - d[3] * x, d[1] - d[3] * y, d[2] - d[3] * at
-                    if d[2] <= 0.0 or n[0] * lp + n[1] * lq + n[2] * lw <= 0.0:
+                    if facing[0] * lp + facing[1] * lq + facing[2] * lw <= 0.0:
+                        continue
+                    if curved:
+                        d = light_over(pattern, frame, lights[l], x, y, at, at)
+                    if d[2] <= 0.0:
                         continue
                     colour = lit_by(lights[l], material, n_world, e, at_world)
                     if colour[0] <= 0.0 and colour[1] <= 0.0 and colour[2] <= 0.0:
@@ -200,6 +220,8 @@ def csg(
                 break
             across = down = min(across, MOST)
         radiance[index, 3] = error / SURE
+        if curved:
+            radiance[index, 3] += unsure(frame, max(p0 - fp0, fp1 - p1, q0 - fq0, fq1 - q1, pattern.width))
         radiance[index, 4] = float(looked) * max(shared, 1)
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / taken, green / taken, blue / taken
     keep(owned)

@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.curve import Bow, applied, bow_of, is_curved, reach_over, sink, turned
+from renderer.geometry.curve import Bow, applied, bow_of, is_curved, reach_over, sink, turned, unsure
 from renderer.geometry.folds import SUMS, crowded, extent_along, family_at, fold, is_alone, runs_straight
 from renderer.geometry.pieces import is_beyond, locate, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find, nearby, over_crossing
@@ -850,5 +850,8 @@ def line(
                     if work.light[l, 3] != 0.0:
                         colour = lit_by(lights[l], material, n_world, e, at)
                         red, green, blue = red + part * colour[0], green + part * colour[1], blue + part * colour[2]
+        if curved and grooves > 0:
+            far = max(r.wide_high - r.high, r.low - r.wide_low, pattern.width)
+            radiance[index, 3] = unsure(frame, far)
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red, green, blue
     keep(owned)

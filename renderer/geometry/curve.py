@@ -14,10 +14,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from renderer.kernel import leaf
-from renderer.shading import Vector
-from renderer.tables import Floats
+from renderer.shading import Vector, light_to_pattern
+from renderer.tables import Floats, Pattern
+
+
+BOWED = 0.03  # the error that is left, in parts of the angle by which the base turns within reach (measured)
 
 
 class Bow(NamedTuple):
@@ -32,6 +36,13 @@ class Bow(NamedTuple):
 @leaf
 def is_curved(frame: np.void) -> bool:
     return bool(frame.form[0] != 0.0 or frame.form[1] != 0.0 or frame.form[2] != 0.0)
+
+
+@leaf
+def unsure(frame: np.void, far: float) -> float:
+    """About the error that is left where what matters reaches so far beyond a footprint, relative to a white surface."""
+    f = frame.form
+    return BOWED * max(abs(f[0]), abs(f[1]), abs(f[2])) * far
 
 
 @leaf
@@ -102,3 +113,92 @@ def sink(
             height[i] = c
             continue
         height[i] = 2.0 * c / (d + math.sqrt(max(d * d + 4.0 * second * c, 0.0)))
+
+
+@leaf
+def eye_over(pattern: Pattern, frame: np.void) -> float:
+    """How high over the plane the eye stands for straight rays to pass over the lowest and the highest points of the
+    grooves where sight over a curved base does; the eye's own height where it is flat."""
+    up = float(frame.eye[2])
+    if not is_curved(frame) or up <= 0.0:
+        return up
+    x, y = (frame.eye[0] - frame.pq[0]) / up, (frame.eye[1] - frame.pq[1]) / up
+    u, v = applied(frame, x, y)
+    deep = pattern.depth
+    far = math.hypot(x, y)
+    if far * deep > 2.0 * pattern.width:  # the groove ends before
+        deep = 2.0 * pattern.width / far
+    return up * 0.5 * (1.0 + math.sqrt(max(1.0 + 2.0 * (u * x + v * y) * (pattern.height - deep), 0.0)))
+
+
+@leaf
+def sight_over(
+    frame: np.void, p: float, q: float, gp: float, gq: float, high: float, low: float
+) -> tuple[float, float, float, float]:
+    """The straight line (place, slope) that is where a ray of sight over the plane's point (p, q) is at two heights
+    over a curved base, `high` and `low`."""
+    x, y = p - frame.pq[0], q - frame.pq[1]
+    ux, uy = applied(frame, x, y)
+    ug, vg = applied(frame, gp, gq)
+    c, a, bend = 0.5 * (ux * x + uy * y), 1.0 + ux * gp + uy * gq, ug * gp + vg * gq
+    if a <= 0.0:
+        return p, q, gp, gq
+    down_high = 2.0 * (c - high) / (a + math.sqrt(max(a * a - 2.0 * bend * (c - high), 0.0)))
+    down_low = 2.0 * (c - low) / (a + math.sqrt(max(a * a - 2.0 * bend * (c - low), 0.0)))
+    x0, y0, x1, y1 = x - down_high * gp, y - down_high * gq, x - down_low * gp, y - down_low * gq
+    mx, my = spreading(frame, x0, y0)
+    x0, y0 = x0 - high * mx, y0 - high * my
+    mx, my = spreading(frame, x1, y1)
+    x1, y1 = x1 - low * mx, y1 - low * my
+    sp, sq = (x0 - x1) / (high - low), (y0 - y1) / (high - low)
+    return frame.pq[0] + x1 - low * sp, frame.pq[1] + y1 - low * sq, sp, sq
+
+
+@leaf
+def light_over(
+    pattern: Pattern, frame: np.void, light: np.void, p: float, q: float, w: float, top: float
+) -> tuple[float, float, float, float]:
+    """The light as `light_to_pattern` says, but as high as it is for a straight ray from (p, q, w) that leaves the
+    grooves where a ray over the curved base does.
+
+    0: it is so low that the base keeps it from all up to the height `top`.
+    """
+    d = light_to_pattern(frame, light)
+    if not is_curved(frame):
+        return d
+    x, y = d[0] - d[3] * p, d[1] - d[3] * q
+    u, v = applied(frame, x, y)
+    slope, bend = d[2] - d[3] * w + u * (p - frame.pq[0]) + v * (q - frame.pq[1]), u * x + v * y
+    if pattern.height > 0.0 and slope < 0.0 and (bend <= 0.0 or slope * slope > 2.0 * bend * top):
+        return d[0], d[1], 0.0, d[3]
+    rise = max(pattern.height - w, 0.0)
+    root = math.sqrt(max(slope * slope + 2.0 * bend * rise, 0.0))
+    way = math.inf
+    if slope + root > 0.0:
+        way = 2.0 * rise / (slope + root)
+    if pattern.height == 0.0:  # the groove ends before
+        long = math.hypot(x, y)
+        if long * way > 2.0 * pattern.width:
+            way = 2.0 * pattern.width / long
+    if not way < math.inf:
+        return d
+    return d[0], d[1], slope + 0.5 * bend * way + d[3] * w, d[3]
+
+
+@leaf
+def straightened(
+    pattern: Pattern, frame: np.void, p: float, q: float, blocked: np.uint64, lights: NDArray[np.void]
+) -> float:
+    """By what part `eye_over` and `light_over` change the slopes of sight and light at (p, q), the most of them.
+
+    Straight rays miss the ends of shadows by a part of this.
+    """
+    most = abs(eye_over(pattern, frame) / frame.eye[2] - 1.0)
+    for l in range(len(lights)):
+        if (blocked >> np.uint64(l)) & np.uint64(1):
+            continue
+        d = light_over(pattern, frame, lights[l], p, q, -pattern.depth, pattern.height)
+        own = light_to_pattern(frame, lights[l])[2]
+        if d[2] > 0.0:
+            most = max(most, abs(d[2] - own) / d[2])
+    return most

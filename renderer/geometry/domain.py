@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.curve import eye_over, light_over
 from renderer.geometry.polygon import CORNERS, Counts, clipped
 from renderer.geometry.view import View, on_plane
 from renderer.kernel import leaf
-from renderer.shading import light_to_pattern
 from renderer.tables import Floats, Pattern
 
 AXES = 6  # p, q, across sight, across the light of the first three
@@ -41,7 +41,7 @@ def domain_of() -> Domain:
 
 
 @leaf
-def aim(frame: np.void, view: View, lights: NDArray[np.void], domain: Domain) -> None:
+def aim(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], domain: Domain) -> None:
     """Choose the axes for a footprint."""
     domain.axis[0, 0], domain.axis[0, 1], domain.axis[1, 0], domain.axis[1, 1] = 1.0, 0.0, 0.0, 1.0
     n = 2
@@ -49,7 +49,7 @@ def aim(frame: np.void, view: View, lights: NDArray[np.void], domain: Domain) ->
         if l < 0:
             x, y = frame.eye[0] - view.p, frame.eye[1] - view.q
         else:
-            d = light_to_pattern(frame, lights[l])
+            d = light_over(pattern, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height)
             x, y = d[0] - d[3] * view.p, d[1] - d[3] * view.q
             if d[2] <= 0.0:
                 continue
@@ -63,7 +63,7 @@ def aim(frame: np.void, view: View, lights: NDArray[np.void], domain: Domain) ->
 @leaf
 def spread(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], domain: Domain) -> bool:
     """Write the slabs of a footprint along the axes chosen; False where they have no end."""
-    high, low, dw = pattern.height, -pattern.depth, frame.eye[2]
+    high, low, dw = pattern.height, -pattern.depth, eye_over(pattern, frame)
     n, slab = domain.made[0], domain.slab
     for k in range(n):
         slab[k, 0], slab[k, 1] = math.inf, -math.inf
@@ -76,7 +76,7 @@ def spread(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void
             along = domain.axis[k, 0] * x + domain.axis[k, 1] * y
             slab[k, 0], slab[k, 1] = min(slab[k, 0], along), max(slab[k, 1], along)
         for l in range(len(lights)):
-            d = light_to_pattern(frame, lights[l])
+            d = light_over(pattern, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height)
             if d[2] <= 0.0:
                 continue
             way = (high - w) / d[2] if d[3] == 0.0 else min((high - w) / max(d[2] - w, 1e-300), 1.0)

@@ -83,7 +83,7 @@ def surround(
         for j in range(len(BLOCKS)):
             if at[j, 2] == 1.0:
                 at[j, 0] = math.inf
-        aim(frame, view, lights, local.domain)
+        aim(pattern, frame, view, lights, local.domain)
         size = thinnest(view, 1.0 / max(side, 1))
         finite = spread(pattern, frame, view, lights, local.domain)
         if finite and make(pattern, size, FEW[k], tolerance, most, local):

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.curve import eye_over, is_curved, light_over, turned
 from renderer.geometry.faces import FACES, Faces
 from renderer.geometry.local import FULL, MADE, Local, surround
 from renderer.geometry.polygon import CORNERS, Counts
@@ -19,7 +20,7 @@ from renderer.geometry.query import Nearby
 from renderer.geometry.solid import Meeting, normal_of
 from renderer.geometry.view import View
 from renderer.kernel import leaf
-from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
+from renderer.shading import ambient, lit_by, normal_to_world, to_world, unit
 from renderer.tables import SCALE_CONSTANT, Camera, Floats, Lighting, Pattern
 
 HALVES = 262144  # half-planes of what hides or shades
@@ -69,16 +70,21 @@ def see(
     flat: its frame is that of all footprints.
     """
     held, view = surround(pattern, frame, footprint, flat, camera, lights, tolerance, most, local)
-    if held == MADE and not look(frame, view, local.square[0], lights, local.faces, seen):
+    if held == MADE and not look(pattern, frame, view, local.square[0], lights, local.faces, seen):
         return FULL
     return held
 
 
 @leaf
-def look(frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen) -> bool:
-    """See the faces from a footprint's eye: fill `seen`. False where the eye is on the plane."""
+def look(
+    pattern: Pattern, frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen
+) -> bool:
+    """See the faces from a footprint's eye: fill `seen`. False where the eye is on the plane.
+
+    Over a curved base the eye and the lights stand as high as makes up for it.
+    """
     ray, back = seen.ray, seen.back
-    d0, d1, d2 = frame.eye[0], frame.eye[1], frame.eye[2]
+    d0, d1, d2 = frame.eye[0], frame.eye[1], eye_over(pattern, frame)
     # towards the point (P / W, Q / W, 0) of the plane, W < 0 (view), from the footprint's square to pixels
     for k in range(3):
         if k == 0:
@@ -105,7 +111,7 @@ def look(frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void
     back[2, 2] = (ray[0, 0] * ray[1, 1] - ray[0, 1] * ray[1, 0]) / det
     n, eye = faces.made[0], len(lights)
     for l in range(eye):
-        d = light_to_pattern(frame, lights[l])
+        d = light_over(pattern, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height)
         for k in range(4):
             seen.source[l, k] = d[k]
     seen.source[eye, 0], seen.source[eye, 1], seen.source[eye, 2], seen.source[eye, 3] = d0, d1, d2, 1.0
@@ -245,7 +251,7 @@ def colour_at(
     ray = seen.ray
     p = frame.eye[0] + t * (ray[0, 0] * x + ray[0, 1] * y + ray[0, 2])
     q = frame.eye[1] + t * (ray[1, 0] * x + ray[1, 1] * y + ray[1, 2])
-    w = frame.eye[2] + t * (ray[2, 0] * x + ray[2, 1] * y + ray[2, 2])
+    w = seen.source[len(seen.source) - 1, 2] + t * (ray[2, 0] * x + ray[2, 1] * y + ray[2, 2])
     plane = faces.plane[f]
     n0, n1, n2 = plane[0], plane[1], plane[2]
     if bent:
@@ -253,6 +259,8 @@ def colour_at(
         n0, n1, n2 = normal_of(pattern, found, m, p, q, 0.0, 0.0)
         if n0 * plane[0] + n1 * plane[1] + n2 * plane[2] < 0.0:
             n0, n1, n2 = -n0, -n1, -n2
+    if is_curved(frame):
+        n0, n1, n2 = turned(frame, p - frame.pq[0], q - frame.pq[1], w, (n0, n1, n2))
     n = normal_to_world(frame, (n0, n1, n2))
     at = to_world(frame, p, q, w)
     eye = to_world(frame, frame.eye[0], frame.eye[1], frame.eye[2])
