@@ -89,11 +89,11 @@ def csg(
         fp0, fp1, fq0, fq1 = p0, p1, q0, q1
         apart = False  # what light must pass is not the same all over the footprint
         for l in range(len(lights)):
-            d = light_over(pattern, frame, lights[l], view.p, view.q, low, high)
+            d = light_over(pattern.height, pattern.width, frame, lights[l], view.p, view.q, low, high)
             if curved:
                 for k in range(4):
                     cp, cq = on_plane(view, float(k & 1), float(k >> 1))
-                    c = light_over(pattern, frame, lights[l], cp, cq, low, high)
+                    c = light_over(pattern.height, pattern.width, frame, lights[l], cp, cq, low, high)
                     apart = apart or (c[2] > 0.0) != (d[2] > 0.0)
                     d = (d[0], d[1], min(d[2], c[2]), d[3])
             if d[2] > 0.0 and d[3] == 0.0:
@@ -168,7 +168,7 @@ def csg(
                     if facing[0] * lp + facing[1] * lq + facing[2] * lw <= 0.0:
                         continue
                     if curved:
-                        d = light_over(pattern, frame, lights[l], x, y, at, at)
+                        d = light_over(pattern.height, pattern.width, frame, lights[l], x, y, at, at)
                     if d[2] <= 0.0:
                         continue
                     colour = lit_by(lights[l], material, n_world, e, at_world)

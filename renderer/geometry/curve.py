@@ -16,10 +16,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.kernel import leaf
+from renderer.kernel import callee, leaf
 from renderer.shading import Vector, light_to_pattern
 from renderer.tables import Floats, Pattern
-
 
 BOWED = 0.03  # the error that is left, in parts of the angle by which the base turns within reach (measured)
 
@@ -40,7 +39,7 @@ def is_curved(frame: np.void) -> bool:
 
 @leaf
 def unsure(frame: np.void, far: float) -> float:
-    """About the error that is left where what matters reaches so far beyond a footprint, relative to a white surface."""
+    """About the error that is left where what matters reaches so far beyond a footprint, relative to white."""
     f = frame.form
     return BOWED * max(abs(f[0]), abs(f[1]), abs(f[2])) * far
 
@@ -63,7 +62,7 @@ def spreading(frame: np.void, x: float, y: float) -> tuple[float, float]:
     return (g * u - f * v) / area, (e * v - f * u) / area
 
 
-@leaf
+@callee
 def turned(frame: np.void, x: float, y: float, w: float, n: Vector) -> Vector:
     """A normal of pattern space at x and the height w, in the tangent frame, to first order."""
     u, v = applied(frame, x, y)
@@ -94,7 +93,7 @@ def reach_over(slope: float, bend: float, height: float) -> float:
     return 2.0 / (slope + math.sqrt(max(slope * slope + 2.0 * bend * height, 0.0)))
 
 
-@leaf
+@callee
 def sink(
     bow: Bow, across: float, along: float, centre: float, b: Floats, w: Floats, count: int, height: Floats
 ) -> None:
@@ -115,8 +114,8 @@ def sink(
         height[i] = 2.0 * c / (d + math.sqrt(max(d * d + 4.0 * second * c, 0.0)))
 
 
-@leaf
-def eye_over(pattern: Pattern, frame: np.void) -> float:
+@callee
+def eye_over(height: float, depth: float, width: float, frame: np.void) -> float:
     """How high over the plane the eye stands for straight rays to pass over the lowest and the highest points of the
     grooves where sight over a curved base does; the eye's own height where it is flat."""
     up = float(frame.eye[2])
@@ -124,14 +123,14 @@ def eye_over(pattern: Pattern, frame: np.void) -> float:
         return up
     x, y = (frame.eye[0] - frame.pq[0]) / up, (frame.eye[1] - frame.pq[1]) / up
     u, v = applied(frame, x, y)
-    deep = pattern.depth
+    deep = depth
     far = math.hypot(x, y)
-    if far * deep > 2.0 * pattern.width:  # the groove ends before
-        deep = 2.0 * pattern.width / far
-    return up * 0.5 * (1.0 + math.sqrt(max(1.0 + 2.0 * (u * x + v * y) * (pattern.height - deep), 0.0)))
+    if far * deep > 2.0 * width:  # the groove ends before
+        deep = 2.0 * width / far
+    return up * 0.5 * (1.0 + math.sqrt(max(1.0 + 2.0 * (u * x + v * y) * (height - deep), 0.0)))
 
 
-@leaf
+@callee
 def sight_over(
     frame: np.void, p: float, q: float, gp: float, gq: float, high: float, low: float
 ) -> tuple[float, float, float, float]:
@@ -154,9 +153,9 @@ def sight_over(
     return frame.pq[0] + x1 - low * sp, frame.pq[1] + y1 - low * sq, sp, sq
 
 
-@leaf
+@callee
 def light_over(
-    pattern: Pattern, frame: np.void, light: np.void, p: float, q: float, w: float, top: float
+    height: float, width: float, frame: np.void, light: np.void, p: float, q: float, w: float, top: float
 ) -> tuple[float, float, float, float]:
     """The light as `light_to_pattern` says, but as high as it is for a straight ray from (p, q, w) that leaves the
     grooves where a ray over the curved base does.
@@ -169,17 +168,17 @@ def light_over(
     x, y = d[0] - d[3] * p, d[1] - d[3] * q
     u, v = applied(frame, x, y)
     slope, bend = d[2] - d[3] * w + u * (p - frame.pq[0]) + v * (q - frame.pq[1]), u * x + v * y
-    if pattern.height > 0.0 and slope < 0.0 and (bend <= 0.0 or slope * slope > 2.0 * bend * top):
+    if height > 0.0 and slope < 0.0 and (bend <= 0.0 or slope * slope > 2.0 * bend * top):
         return d[0], d[1], 0.0, d[3]
-    rise = max(pattern.height - w, 0.0)
+    rise = max(height - w, 0.0)
     root = math.sqrt(max(slope * slope + 2.0 * bend * rise, 0.0))
     way = math.inf
     if slope + root > 0.0:
         way = 2.0 * rise / (slope + root)
-    if pattern.height == 0.0:  # the groove ends before
+    if height == 0.0:  # the groove ends before
         long = math.hypot(x, y)
-        if long * way > 2.0 * pattern.width:
-            way = 2.0 * pattern.width / long
+        if long * way > 2.0 * width:
+            way = 2.0 * width / long
     if not way < math.inf:
         return d
     return d[0], d[1], slope + 0.5 * bend * way + d[3] * w, d[3]
@@ -193,11 +192,11 @@ def straightened(
 
     Straight rays miss the ends of shadows by a part of this.
     """
-    most = abs(eye_over(pattern, frame) / frame.eye[2] - 1.0)
+    most = abs(eye_over(pattern.height, pattern.depth, pattern.width, frame) / frame.eye[2] - 1.0)
     for l in range(len(lights)):
         if (blocked >> np.uint64(l)) & np.uint64(1):
             continue
-        d = light_over(pattern, frame, lights[l], p, q, -pattern.depth, pattern.height)
+        d = light_over(pattern.height, pattern.width, frame, lights[l], p, q, -pattern.depth, pattern.height)
         own = light_to_pattern(frame, lights[l])[2]
         if d[2] > 0.0:
             most = max(most, abs(d[2] - own) / d[2])

@@ -49,7 +49,9 @@ def aim(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], 
         if l < 0:
             x, y = frame.eye[0] - view.p, frame.eye[1] - view.q
         else:
-            d = light_over(pattern, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height)
+            d = light_over(
+                pattern.height, pattern.width, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height
+            )
             x, y = d[0] - d[3] * view.p, d[1] - d[3] * view.q
             if d[2] <= 0.0:
                 continue
@@ -63,7 +65,7 @@ def aim(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], 
 @leaf
 def spread(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], domain: Domain) -> bool:
     """Write the slabs of a footprint along the axes chosen; False where they have no end."""
-    high, low, dw = pattern.height, -pattern.depth, eye_over(pattern, frame)
+    high, low, dw = pattern.height, -pattern.depth, eye_over(pattern.height, pattern.depth, pattern.width, frame)
     n, slab = domain.made[0], domain.slab
     for k in range(n):
         slab[k, 0], slab[k, 1] = math.inf, -math.inf
@@ -76,7 +78,9 @@ def spread(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void
             along = domain.axis[k, 0] * x + domain.axis[k, 1] * y
             slab[k, 0], slab[k, 1] = min(slab[k, 0], along), max(slab[k, 1], along)
         for l in range(len(lights)):
-            d = light_over(pattern, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height)
+            d = light_over(
+                pattern.height, pattern.width, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height
+            )
             if d[2] <= 0.0:
                 continue
             way = (high - w) / d[2] if d[3] == 0.0 else min((high - w) / max(d[2] - w, 1e-300), 1.0)

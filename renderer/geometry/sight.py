@@ -84,7 +84,7 @@ def look(
     Over a curved base the eye and the lights stand as high as makes up for it.
     """
     ray, back = seen.ray, seen.back
-    d0, d1, d2 = frame.eye[0], frame.eye[1], eye_over(pattern, frame)
+    d0, d1, d2 = frame.eye[0], frame.eye[1], eye_over(pattern.height, pattern.depth, pattern.width, frame)
     # towards the point (P / W, Q / W, 0) of the plane, W < 0 (view), from the footprint's square to pixels
     for k in range(3):
         if k == 0:
@@ -111,7 +111,7 @@ def look(
     back[2, 2] = (ray[0, 0] * ray[1, 1] - ray[0, 1] * ray[1, 0]) / det
     n, eye = faces.made[0], len(lights)
     for l in range(eye):
-        d = light_over(pattern, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height)
+        d = light_over(pattern.height, pattern.width, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height)
         for k in range(4):
             seen.source[l, k] = d[k]
     seen.source[eye, 0], seen.source[eye, 1], seen.source[eye, 2], seen.source[eye, 3] = d0, d1, d2, 1.0
