@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.colour import EVEN, colour_over, sharpness, turns
-from renderer.geometry.curve import is_curved, straightened
+from renderer.geometry.curve import ROUGH, is_curved, straightened
 from renderer.geometry.faces import Faces
 from renderer.geometry.local import BLOCKS, FULL, local_of
 from renderer.geometry.polygon import CORNERS, Counts, area, subtract
@@ -50,8 +50,6 @@ LEAST = 1e-12  # parts of a footprint as small as this are nothing
 WHOLE = 0.1  # in tolerances: the shares of a footprint sum to one within this, or it is left to another method
 CHORDED = 2.0  # ... where chords stand for arcs and steps for scales; shares are divided by their sum
 SHARE = 0.1  # of the tolerance, that the colour of one part may use up
-BOWED = 0.2  # the error over a curved base, in parts of what slopes are changed by to make up for it (measured)
-ROUGH = 0.06  # ... that is left to rays: next to the terminator straight light is wrong all over
 BENT = 0.5  # the error where chords stand for arcs, in tolerances
 
 
@@ -171,7 +169,7 @@ def area_sampling(
         view = view_of(footprint, frame, camera)
         bowed = 0.0
         if is_curved(frame):
-            bowed = BOWED * straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
+            bowed = straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
             if bowed > max(tolerance, ROUGH):
                 continue
         if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:

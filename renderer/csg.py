@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.curve import is_curved, light_over, sight_over, turned, unsure
+from renderer.geometry.curve import ROUGH, is_curved, light_over, sight_over, straightened, turned, unsure
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.rays import follow
@@ -40,6 +40,7 @@ FEW = 2  # with a tolerance, and no more pieces near than this, it begins with
 PROBE = 4  # the corners and PROBE * PROBE samples,
 FIRST = 8  # else or then takes FIRST * FIRST,
 MOST = 64  # and at most MOST * MOST
+GRAINY = 0.01  # the tolerance, at least, where a curved base makes rays bend much: many footprints at low light
 SURE = 0.5  # how much of the tolerance the standard error may take
 
 
@@ -116,7 +117,10 @@ def csg(
             across = down = FIRST
             if 0 <= shared <= FEW and not shows:
                 across, down, corners = PROBE, PROBE, 4
-            target = SURE * tolerance * white(lighting, to_world(frame, view.p, view.q, 0.0))
+            target = tolerance
+            if curved and straightened(pattern, frame, view.p, view.q, footprint.blocked, lights) > ROUGH:
+                target = max(tolerance, GRAINY)
+            target *= SURE * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0
         taken = looked = 0

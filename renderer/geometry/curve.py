@@ -22,6 +22,9 @@ from renderer.tables import Floats, Pattern
 
 BOWED = 0.03  # the error that is left, in parts of the angle by which the base turns within reach (measured)
 
+BOWED_STRAIGHT = 0.2  # ... where rays are straight, in parts of what their slopes are changed by to make up for it
+ROUGH = 0.06  # ... that is left to rays which bend: next to the terminator straight light is wrong all over
+
 
 class Bow(NamedTuple):
     """The form in the frame of parallel grooves, pattern units: along B and T."""
@@ -188,9 +191,9 @@ def light_over(
 def straightened(
     pattern: Pattern, frame: np.void, p: float, q: float, blocked: np.uint64, lights: NDArray[np.void]
 ) -> float:
-    """By what part `eye_over` and `light_over` change the slopes of sight and light at (p, q), the most of them.
+    """About the error of straight rays, relative to white.
 
-    Straight rays miss the ends of shadows by a part of this.
+    It goes with the part by which `eye_over` and `light_over` change a slope of sight or light at (p, q), the most.
     """
     most = abs(eye_over(pattern.height, pattern.depth, pattern.width, frame) / frame.eye[2] - 1.0)
     for l in range(len(lights)):
@@ -200,4 +203,4 @@ def straightened(
         own = light_to_pattern(frame, lights[l])[2]
         if d[2] > 0.0:
             most = max(most, abs(d[2] - own) / d[2])
-    return most
+    return BOWED_STRAIGHT * most

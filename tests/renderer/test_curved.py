@@ -193,7 +193,7 @@ def test_shadows_in_grooves_follow_the_base(shape: str, radiance: Radiance) -> N
 @pytest.mark.parametrize("shape", ["sphere", "cylinder"])
 @pytest.mark.parametrize(("method", "worth"), [("csg", 0.25), ("area", 0.6), ("auto", 0.4)])
 def test_crossing_ridges_in_low_light(method: str, worth: float, shape: str, radiance: Radiance) -> None:
-    """What the tangent plane is wrong by falls to 12 and 20 % (`csg`), 41 and 51 % (`area`), 34 % (`auto`): measured."""
+    """The tangent plane's error falls to 12 and 20 % (`csg`), 41 and 51 % (`area`), 34 % (`auto`): measured."""
     grooves = [row(0.1, 0.025, 30), row(0.1, 0.025, 20, across=True)]
     off, flat = errors(scene(shape, grooves, 12.0), shape, method, radiance)
     assert flat > 0.01
