@@ -17,7 +17,7 @@ from renderer.geometry.curve import ROUGH, is_curved, light_over, sight_over, st
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.rays import follow
-from renderer.geometry.solid import DOWN, is_lit, lift, meet, normal_of, polish
+from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_ray, thin_of
 from renderer.geometry.spans import events
 from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
@@ -65,7 +65,7 @@ def csg(
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
     lights, eye = lighting.lights, camera.origin
     high, low = pattern.height, -pattern.depth
-    thin = 1e-6 * (high - low) + 1e-300
+    thin = thin_of(pattern)
     above = np.zeros(MOST)
     shows = bounces > 0 and any_mirror(materials, slots)
     for index in chosen:
@@ -178,8 +178,11 @@ def csg(
                     colour = lit_by(lights[l], material, n_world, e, at_world)
                     if colour[0] <= 0.0 and colour[1] <= 0.0 and colour[2] <= 0.0:
                         continue
-                    if not is_lit(pattern, found, spans, shared, d, sx, sy, sw):
-                        continue
+                    lp, lq, roof, ground, way = shadow_ray(pattern, d, sx, sy, sw)
+                    if roof > ground:
+                        s = meet(pattern, found, spans, shared, sx - sw * lp, sy - sw * lq, lp, lq, roof, ground, way)
+                        if s.w > -math.inf:
+                            continue
                     lit |= np.uint64(1) << np.uint64(l)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 if shows and i >= 0:

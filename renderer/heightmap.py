@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from renderer.errors import Cancelled
 from renderer.geometry.query import find, nearby
-from renderer.geometry.solid import DOWN, meet, normal_of, polish
+from renderer.geometry.solid import DOWN, meet, normal_of, polish, thin_of
 from renderer.geometry.spans import events
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.shading import unit
@@ -97,7 +97,7 @@ def sample(
     rows, columns = heights.shape
     dp, dq = (window[2] - window[0]) / columns, (window[3] - window[1]) / rows
     high, low = pattern.height, -pattern.depth
-    thin = 1e-6 * (high - low) + 1e-300
+    thin = thin_of(pattern)
     margin = pattern.reach
     part = 1.0 / (k * k)
     for i in range(first, end):

@@ -8,7 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.query import Nearby
-from renderer.geometry.solid import DOWN, OPEN, UP, Meeting, is_lit, leveled, lift, meet, normal_of, polish
+from renderer.geometry.solid import (
+    DOWN,
+    OPEN,
+    UP,
+    Meeting,
+    leveled,
+    lift,
+    meet,
+    normal_of,
+    polish,
+    shadow_ray,
+    thin_of,
+)
 from renderer.geometry.spans import Events
 from renderer.kernel import callee
 from renderer.shading import (
@@ -27,24 +39,13 @@ from renderer.tables import Floats, Lighting, Pattern
 
 @callee
 def meet_far(
-    pattern: Pattern, found: Nearby, spans: Events, x: float, y: float, w: float, gp: float, gq: float, up: bool
-) -> Meeting:
-    """What a ray from a point off the surface meets on its way up or down."""
-    high, low = pattern.height, -pattern.depth
-    thin = 1e-6 * (high - low) + 1e-300
-    if up:
-        if w >= high:
-            return OPEN
-        return meet(pattern, found, spans, -1, x - w * gp, y - w * gq, gp, gq, high + thin, w, UP)
-    return meet(pattern, found, spans, -1, x - w * gp, y - w * gq, gp, gq, w, low - thin, DOWN)
-
-
-@callee
-def is_lit_far(
-    pattern: Pattern, found: Nearby, spans: Events, light: tuple[float, float, float, float], x: float, y: float,
-    w: float,
-) -> bool:  # fmt: skip
-    return is_lit(pattern, found, spans, -1, light, x, y, w)
+    pattern: Pattern, found: Nearby, spans: Events, x: float, y: float, w: float, gp: float, gq: float, top: float,
+    bottom: float, way: int,
+) -> Meeting:  # fmt: skip
+    """What the ray through (x, y, w) meets between two heights."""
+    if top <= bottom:
+        return OPEN
+    return meet(pattern, found, spans, -1, x - w * gp, y - w * gq, gp, gq, top, bottom, way)
 
 
 @callee
@@ -67,7 +68,10 @@ def follow(
         d = direction_to_pattern(frame, (-e[0], -e[1], -e[2]))
         rise = leveled(d[0], d[1], d[2])
         gp, gq = d[0] / rise, d[1] / rise
-        m = meet_far(pattern, found, spans, x, y, w, gp, gq, rise > 0.0)
+        top, bottom, way = w, -pattern.depth - thin_of(pattern), DOWN
+        if rise > 0.0:
+            top, bottom, way = pattern.height + thin_of(pattern), w, UP
+        m = meet_far(pattern, found, spans, x, y, w, gp, gq, top, bottom, way)
         if m.w == -math.inf:
             if rise > 0.0:
                 red, green, blue = red + through[0] * sky[0], green + through[1] * sky[1], blue + through[2] * sky[2]
@@ -94,7 +98,8 @@ def follow(
             lit = lit_by(lights[l], material, n, e, at)
             if light[2] <= 0.0 or max(lit[0], lit[1], lit[2]) <= 0.0:
                 continue
-            if is_lit_far(pattern, found, spans, light, x, y, w):
+            lp, lq, top, bottom, way = shadow_ray(pattern, light, x, y, w)
+            if meet_far(pattern, found, spans, x, y, w, lp, lq, top, bottom, way).w == -math.inf:
                 colour = (colour[0] + lit[0], colour[1] + lit[1], colour[2] + lit[2])
         red, green, blue = red + through[0] * colour[0], green + through[1] * colour[1], blue + through[2] * colour[2]
         clear = mirrored(material, dot(n, e))

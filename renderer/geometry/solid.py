@@ -326,24 +326,24 @@ def lean(piece: np.void, profile: np.void, part: int, s: float, b: float) -> flo
 
 
 @leaf
-def is_lit(
-    pattern: Pattern, found: Nearby, e: Events, count: int, light: tuple[float, float, float, float],
-    x: float, y: float, w: float,
-) -> bool:  # fmt: skip
-    """Whether nothing stands between a point off the surface and a light (D_p, D_q, D_w, h)."""
-    high, low = pattern.height, -pattern.depth
-    thin = 1e-6 * (high - low) + 1e-300
+def shadow_ray(
+    pattern: Pattern, light: tuple[float, float, float, float], x: float, y: float, w: float
+) -> tuple[float, float, float, float, int]:
+    """The ray from a point off the surface to a light (D_p, D_q, D_w, h), for `meet`: its slope, highest and lowest
+    point, and its way. Where it has no height, nothing stands in it."""
+    high = pattern.height + thin_of(pattern)
     gp, gq, rise = light[0] - light[3] * x, light[1] - light[3] * y, light[2] - light[3] * w
     rise = leveled(gp, gq, rise)
     gp, gq = gp / rise, gq / rise
-    roof = high + thin if light[3] == 0.0 else min(high + thin, w + rise)
     if rise < 0.0:
-        m = meet(pattern, found, e, count, x - w * gp, y - w * gq, gp, gq, w, w + rise, DOWN)
-    elif roof > w:
-        m = meet(pattern, found, e, count, x - w * gp, y - w * gq, gp, gq, roof, w, SHADOW)
-    else:
-        m = OPEN
-    return m.w == -math.inf
+        return gp, gq, w, w + rise, DOWN
+    return gp, gq, high if light[3] == 0.0 else min(high, w + rise), w, SHADOW
+
+
+@leaf
+def thin_of(pattern: Pattern) -> float:
+    """How far beyond the highest and the lowest point rays begin and end."""
+    return 1e-6 * (pattern.height + pattern.depth) + 1e-300
 
 
 @leaf
