@@ -117,13 +117,19 @@ def is_alone(pattern: Pattern, which: int, view: View, r: Reach, found: Nearby) 
         return True
     m = radius + pattern.reach
     count = find_in(pattern.rest, found, view.p - m, view.q - m, view.p + m, view.q + m, SCANNED)
+    return count >= 0 and not any_within(pattern, found, count, view, radius)
+
+
+@leaf
+def any_within(pattern: Pattern, found: Nearby, count: int, view: View, radius: float) -> bool:
+    """Whether any of the first `count` pieces found gets as near to the footprint's centre as this."""
     for k in range(count):
         piece = pattern.pieces[found.piece[k]]
         x, y = view.p - found.shift[k, 0], view.q - found.shift[k, 1]
         s, b = locate(piece, x, y)
         if not is_beyond(piece, x, y, s, b, radius):
-            return False
-    return count >= 0
+            return True
+    return False
 
 
 @leaf

@@ -243,7 +243,7 @@ def bend(obj: np.void, triangles: Triangles, hit: np.void, frame: np.void) -> No
     """
     x, f = frame.axes, frame.form
     sigma = math.sqrt(x[0, 2] * x[0, 2] + x[1, 2] * x[1, 2] + x[2, 2] * x[2, 2])
-    if obj.shape == SPHERE or obj.shape == CYLINDER:
+    if obj.shape != MESH and obj.shape != RECTANGLE:
         along = (obj.rotation[0, 2], obj.rotation[1, 2], obj.rotation[2, 2])
         over = sigma * obj.size[0]
         for i in range(3):

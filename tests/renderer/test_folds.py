@@ -17,10 +17,10 @@ import pytest
 from numpy.typing import NDArray
 
 import schema
-from renderer import line as method_line
 from renderer import pipeline
 from renderer.compile import PatternCache, compile_scene, families, patterns
 from renderer.footprint import Tile, flat_frames, footprints
+from renderer.geometry import layout
 from renderer.geometry.query import find, nearby
 from renderer.geometry.view import view_of
 from renderer.raycast import Caster
@@ -191,13 +191,13 @@ def looked_at(plate: Plate, check: Check, kind: str, count: int, profile: list[l
     pattern, camera, lights = compiled.patterns[0], compiled.camera, compiled.lighting.lights
     caster = Caster(compiled.objects, compiled.triangles)
     seen = footprints(caster, camera, lights, Tile(0, 0, 16, 12), flat_frames(caster, camera.origin), 0)
-    work = method_line.work_for(pattern, len(lights))
+    work = layout.work_for(pattern, len(lights))
     found = []
     for footprint in seen.footprints:
         frame = seen.frames[footprint["frame"]]
         view = view_of(footprint, frame, camera)
-        method_line.meet_lights(False, pattern, frame, view, footprint["blocked"], lights, work)
-        rows, entries, _ = method_line.fold_within(False, pattern, frame, view, lights, work)
+        layout.meet_lights(False, pattern, frame, view, footprint["blocked"], lights, work)
+        rows, entries, _ = layout.fold_within(False, pattern, frame, view, lights, work)
         found.append(rows + entries if rows else -1)
     return found
 
