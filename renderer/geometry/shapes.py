@@ -243,18 +243,9 @@ def bend(obj: np.void, triangles: Triangles, hit: np.void, frame: np.void) -> No
     """
     x, f = frame.axes, frame.form
     sigma = math.sqrt(x[0, 2] * x[0, 2] + x[1, 2] * x[1, 2] + x[2, 2] * x[2, 2])
-    if obj.shape != MESH and obj.shape != RECTANGLE:
-        along = (obj.rotation[0, 2], obj.rotation[1, 2], obj.rotation[2, 2])
-        over = sigma * obj.size[0]
-        for i in range(3):
-            f[0] += x[i, 0] * x[i, 0] / over
-            f[1] += x[i, 0] * x[i, 1] / over
-            f[2] += x[i, 1] * x[i, 1] / over
-        if obj.shape == CYLINDER:
-            p = x[0, 0] * along[0] + x[1, 0] * along[1] + x[2, 0] * along[2]
-            q = x[0, 1] * along[0] + x[1, 1] * along[1] + x[2, 1] * along[2]
-            f[0], f[1], f[2] = f[0] - p * p / over, f[1] - p * q / over, f[2] - q * q / over
-    elif obj.shape == MESH:
+    if obj.shape == RECTANGLE:
+        return
+    if obj.shape == MESH:
         uv, corner, m = triangles.uv[hit.face], triangles.normals[hit.face], obj.mapping
         p1, q1 = (uv[1, 0] - uv[0, 0]) * m[0], (uv[1, 1] - uv[0, 1]) * m[1]
         p2, q2 = (uv[2, 0] - uv[0, 0]) * m[0], (uv[2, 1] - uv[0, 1]) * m[1]
@@ -267,6 +258,17 @@ def bend(obj: np.void, triangles: Triangles, hit: np.void, frame: np.void) -> No
             f[0] += by_p * x[i, 0] / sigma
             f[1] += 0.5 * (by_p * x[i, 1] + by_q * x[i, 0]) / sigma
             f[2] += by_q * x[i, 1] / sigma
+        return
+    along = (obj.rotation[0, 2], obj.rotation[1, 2], obj.rotation[2, 2])
+    over = sigma * obj.size[0]
+    for i in range(3):
+        f[0] += x[i, 0] * x[i, 0] / over
+        f[1] += x[i, 0] * x[i, 1] / over
+        f[2] += x[i, 1] * x[i, 1] / over
+    if obj.shape == CYLINDER:
+        p = x[0, 0] * along[0] + x[1, 0] * along[1] + x[2, 0] * along[2]
+        q = x[0, 1] * along[0] + x[1, 1] * along[1] + x[2, 1] * along[2]
+        f[0], f[1], f[2] = f[0] - p * p / over, f[1] - p * q / over, f[2] - q * q / over
 
 
 @kernel

@@ -23,6 +23,7 @@ export function cameraPanel(editor: Editor): PanelPlan {
         fields.number({ label: "Field of view", place: ["camera", "fov"], otherwise: 40, unit: "°" }),
         fields.tuple({ label: "Size", place: ["camera", "resolution"], otherwise: [640, 480] }, ["w", "h"]),
         fields.number({ label: "Exposure", place: ["render", "exposure"], otherwise: 1 }),
+        fields.number({ label: "Bounces", place: ["render", "bounces"], otherwise: 0 }),
         fields.select({ label: "Method", place: ["render", "method"], otherwise: "auto" }, METHODS),
       ];
     },
