@@ -141,13 +141,22 @@ class Frame:
         def timed(name: str, start: float) -> None:
             spent[name] = spent.get(name, 0.0) + time.perf_counter() - start
 
-        start = time.perf_counter()
+        def sample(which: NDArray[np.int64], tolerance: float, sparing: bool) -> None:
+            start = time.perf_counter()
+            csg(
+                settings.samples, settings.bounces, tolerance, sparing, settings.seed, pattern, seen.footprints, which,
+                *rest,
+            )  # fmt: skip
+            timed("csg", start)
+
         if settings.method == "csg" and pattern is not BARE:
-            csg(settings.samples, settings.bounces, 0.0, False, settings.seed, pattern, seen.footprints, chosen, *rest)
-            return timed("csg", start)
+            sample(chosen, 0.0, sparing=False)
+            return
+        start = time.perf_counter()
         if isinstance(self.model, Textures) and pattern is not BARE:
             relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
-            return timed("relief", start)
+            timed("relief", start)
+            return
         bounces = settings.bounces > 0 and any_mirror(scene.materials, scene.slots[row])
         if settings.method in ("lines", "area") and pattern is not BARE:
             left = chosen
@@ -168,42 +177,15 @@ class Frame:
                 area_sampling(settings.tolerance, most, flat, pattern, seen.footprints, ordered, *rest)
             timed("lines" if settings.method == "lines" else "area", start)
             left = left[method[left] == NOT_MINE]
-        if (
-            len(left) and settings.method == "auto" and not bounces
-        ):  # with as many strips as there is room for, if samples do not do
-            start = time.perf_counter()
-            csg(
-                settings.samples,
-                settings.bounces,
-                settings.tolerance,
-                True,
-                settings.seed,
-                pattern,
-                seen.footprints,
-                left,
-                *rest,
-            )
-            timed("csg", start)
+        if len(left) and settings.method == "auto" and not bounces:
+            sample(left, settings.tolerance, sparing=True)
             left = in_blocks(seen.footprints, left[method[left] == NOT_MINE])
-            start = time.perf_counter()
+            start = time.perf_counter()  # with as many strips as there is room for, where samples do not do
             area_sampling(settings.tolerance, STRIPS, int(row) in self.flat, pattern, seen.footprints, left, *rest)
             timed("area", start)
             left = left[method[left] == NOT_MINE]
         if len(left):
-            start = time.perf_counter()
-            csg(
-                settings.samples,
-                settings.bounces,
-                settings.tolerance,
-                False,
-                settings.seed,
-                pattern,
-                seen.footprints,
-                left,
-                *rest,
-            )
-            timed("csg", start)
-        return None
+            sample(left, settings.tolerance, sparing=False)
 
 
 def render(

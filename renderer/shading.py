@@ -124,7 +124,7 @@ def mirrored(material: np.void, cosine: float) -> Vector:
     )
 
 
-@leaf
+@kernel
 def any_mirror(materials: NDArray[np.void], slots: NDArray[np.int32]) -> bool:
     """Whether any of these rows of `materials` is an ideal mirror."""
     some = False

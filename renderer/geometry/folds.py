@@ -304,7 +304,8 @@ def fold(
     """Fill `near` (NEAR) with the periods to look at, from left to right, and `sums` with what each of them stands for.
 
     How many rows of both. An entry (shift, copies) of `sums` is so many copies of all that is near, moved along B.
-    Without any, each length along B counts sums[0, 1] of the footprint. No rows of `near`: the family is left as it is.
+    Without any, each length along B counts sums[0, 1] of the footprint, times the copies of its row. No rows of
+    `near`: the family is left as it is.
     """
     change, skew = changes(family, view, r, eye_w, light)
     d = family.period

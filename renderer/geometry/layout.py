@@ -207,16 +207,9 @@ def wider_of(pattern: Pattern, frame: np.void, eye_p: float, eye_q: float) -> fl
 
 @leaf
 def reach_along(
-    paper: bool,
-    wider: float,
-    pattern: Pattern,
-    view: View,
-    eye_p: float,
-    eye_q: float,
-    tx: float,
-    ty: float,
+    paper: bool, wider: float, pattern: Pattern, view: View, eye_p: float, eye_q: float, tx: float, ty: float,
     work: Work,
-) -> Reach:
+) -> Reach:  # fmt: skip
     """How far what matters to the footprint lies, along T and B.
 
     Inside a groove a ray gets no deeper than the groove's width lets it, which bounds how far it goes on below.

@@ -53,9 +53,7 @@ class Mirrors(NamedTuple):
     """Memory of one thread."""
 
     facet: NDArray[np.int64]  # (MIRRORS,) the mirrors on the way, from the eye on
-    state: NDArray[
-        np.int64
-    ]  # (MIRRORS, 2) whether it looks right (0) or left (1), or is done (2); the next facet there
+    state: NDArray[np.int64]  # (MIRRORS, 2) it looks right (0) or left (1), or is done (2); the next facet there
     eye: Floats  # (MIRRORS, 4) D of the eye (0) and of its images in them
     window: Floats  # (MIRRORS, 4) v from, to; and of the rays that pass over what has been looked at: from, to
     seen: Floats  # (GLIMPSES, 5) on the eye's base line from, to; radiance
@@ -202,9 +200,7 @@ def tint_along(
 
 
 @leaf
-def onto_facet(
-    d: Floats, b: float, t: float, w: float, i: int, section: Section
-) -> tuple[float, float, float]:  # fmt: skip
+def onto_facet(d: Floats, b: float, t: float, w: float, i: int, section: Section) -> tuple[float, float, float]:
     """Where the line from D through (b, t, w) meets facet i."""
     b0, w0, b1, w1 = section.b[i], section.w[i], section.b[i + 1], section.w[i + 1]
     v = met(d, b, w, b0, w0, b1, w1)

@@ -36,8 +36,8 @@ from renderer.kernel import fixed, leaf
 from renderer.tables import PROFILE, SCALE_CONSTANT, Pattern
 
 SEARCH = 1024
-"""Stretches of a shadow ray that are looked at: all that a pattern has, and of one that tiles for ever so many tiles
-that a ray which has met nothing there runs along free lanes."""
+"""Stretches of a ray on its way up that are looked at: all that a pattern has, and of one that tiles for ever so many
+tiles that a ray which has met nothing there runs along free lanes."""
 
 LEVEL = 1e-6  # a ray's slope to the plane is taken for at least this
 THIN = 1e-7  # solid thinner than this part of the pattern's height range, or width, is rounding, not matter
@@ -69,12 +69,18 @@ def is_solid(e: Events, below: bool) -> bool:
 
 
 @leaf
-def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[float, int, int]:
-    """The height at which the ray enters the solid on its way down, the facet and its owner; -inf: nowhere."""
+def begin(e: Events, n: int) -> None:
+    """Nothing is open, and the events are in order."""
     for rank in range(len(e.open)):
         e.open[rank, 0] = e.open[rank, 1] = e.open[rank, 2] = 0
-    below = high <= 0.0
     sort(e, n)
+
+
+@leaf
+def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[float, int, int]:
+    """The height at which the ray enters the solid on its way down, the facet and its owner; -inf: nowhere."""
+    begin(e, n)
+    below = high <= 0.0
     k = 0
     if below and n == 0:
         return high, PLANE, -1
@@ -103,10 +109,8 @@ def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[floa
 @leaf
 def last(e: Events, n: int, high: float, low: float, thin: float) -> tuple[float, int, int]:
     """The same for a ray on its way up: where the solid that it meets first begins."""
-    for rank in range(len(e.open)):
-        e.open[rank, 0] = e.open[rank, 1] = e.open[rank, 2] = 0
+    begin(e, n)
     below = high <= 0.0
-    sort(e, n)
     found, owner, what = -math.inf, -1, PLANE
     solid = False  # where the ray ends, it is not stopped
     k = 0
