@@ -172,6 +172,11 @@ def dressed(
         family["half"] = np.min(np.maximum(np.abs(left), np.abs(right)))
         hair = HAIR * family["period"]
         apart = bool((finish[:-1] <= start[1:] + hair).all() and finish[-1] <= start[0] + family["period"] + hair)
+        # Where upright walls touch, nothing stands between: what is seen then goes on from groove to groove.
+        ends = np.array([_upright(p, points) for p in profile])
+        ends = np.where(own["turned"][:, None] > 0.0, ends, ends[:, ::-1])
+        gap = np.append(start[1:], start[0] + family["period"]) - finish
+        apart = apart and not (ends[:, 1] & np.roll(ends[:, 0], -1) & (gap <= hair)).any()
         same = bool((groove["scale_kind"] == SCALE_CONSTANT).all() and (own["scale"] > 0.0).all())
         whole = all(
             _through(pieces[row], profiles[g["profile"]], points) for row, g in zip(own["piece"], groove, strict=True)
@@ -179,6 +184,12 @@ def dressed(
         family["folds"] = apart and same and (whole or math.isfinite(family["count"])) and _level(profile, points)
         members[family["first"] : family["last"]] = own
     return families, members
+
+
+def _upright(profile: np.void, points: Floats) -> tuple[bool, bool]:
+    """Whether the profile's first and its last facet are vertical."""
+    b = points[profile["start"] : profile["start"] + profile["count"], 0]
+    return bool(b[0] == b[1]), bool(b[-1] == b[-2])
 
 
 def _level(profiles: NDArray[np.void], points: Floats) -> bool:

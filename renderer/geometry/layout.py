@@ -356,12 +356,22 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
                     same = same and pattern.facet_slot[groove.slot + i] == pattern.facet_slot[other.slot + i]
                 if same:
                     continue
+            if strict and g.start < h.finish + hair and is_upright(pattern, h, True) and is_upright(pattern, g, False):
+                return -1  # no wall stands where upright ones touch
             if (strict or pattern.height > 0.0) and g.start < h.finish - hair:
                 return -1  # ridges that overlap are not laid out one beside the other
             last += 1
             work.near[last] = g
         n = last + 1
     return n
+
+
+@leaf
+def is_upright(pattern: Pattern, near: np.void, right: bool) -> bool:
+    """Whether the cross-section ends in a vertical facet on this side."""
+    profile = pattern.profiles[pattern.grooves[pattern.pieces[near.piece].groove].profile]
+    i = profile.start + (profile.count - 2 if right == (near.turned > 0.0) else 0)
+    return bool(pattern.points[i, 0] == pattern.points[i + 1, 0])
 
 
 @leaf
