@@ -212,15 +212,16 @@ def csg(
                             unlike += (value - above[column]) ** 2
                         above[column] = last = value
             looked += taken
-            if tolerance <= 0.0 or (corners > 0 and alike):
+            if tolerance <= 0.0:
                 break
+            if corners == 0 or alike:
+                pairs = across * (down - 1) + down * (across - 1)
+                error = math.sqrt(unlike / (2.0 * pairs) / taken)
+                if error <= target or across >= MOST:
+                    break
             if corners > 0:
                 across, down, corners = FIRST, FIRST, 0
                 continue
-            pairs = across * (down - 1) + down * (across - 1)
-            error = math.sqrt(unlike / (2.0 * pairs) / taken)
-            if error <= target or across >= MOST:
-                break
             across = int(math.ceil(1.05 * across * min((error / target) ** (2.0 / 3.0), float(MOST))))
             if sparing and across > MOST:
                 method[index] = NOT_MINE

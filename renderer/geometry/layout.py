@@ -317,12 +317,18 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
         f, slope = scale_at(pattern.scale_table, groove, piece, s)
         if strict:
             # Bending moves whole strips aside: it tells at the footprint's rim, and between a facet and its shadow.
-            turn = 0.5 * abs(piece.curvature)
-            if turn * r.length**2 > STRAIGHT * (r.high - r.low):
+            # Most where it is nearest to the centre of curvature.
+            inwards = piece.curvature
+            left, right = min(max(b0, -piece.half), piece.half), min(max(b1, -piece.half), piece.half)
+            closest = 1.0 - max(inwards * left, inwards * right)  # to the centre, in radii
+            if closest <= 0.0:
                 return -1
-            if turn * (length - r.length) ** 2 > STRAIGHT * piece.half:
+            turn = abs(inwards) / closest
+            if 0.5 * turn * r.length**2 > STRAIGHT * (r.high - r.low):
                 return -1
-            if abs(piece.curvature) * (length - r.length) > TURNED:
+            if 0.5 * turn * (length - r.length) ** 2 > STRAIGHT * piece.half:
+                return -1
+            if turn * (length - r.length) > TURNED:
                 return -1
             if steepest(pattern, groove, piece, s, slope, length) * max(length, pattern.depth, piece.half) > SLOPED * f:
                 return -1
@@ -356,7 +362,7 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
                     same = same and pattern.facet_slot[groove.slot + i] == pattern.facet_slot[other.slot + i]
                 if same:
                     continue
-            if strict and g.start < h.finish + hair and is_upright(pattern, h, True) and is_upright(pattern, g, False):
+            if g.start < h.finish + hair and is_upright(pattern, h, True) and is_upright(pattern, g, False):
                 return -1  # no wall stands where upright ones touch
             if (strict or pattern.height > 0.0) and g.start < h.finish - hair:
                 return -1  # ridges that overlap are not laid out one beside the other

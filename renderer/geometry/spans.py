@@ -8,7 +8,8 @@ Profiles that are height fields are walked along, facet by facet. Those that ove
 of which holds the ray in one interval.
 
 Straight grooves of a constant or linear scale are exact. On arcs, and under other scales, the ray is followed in
-(s, b) by chords that leave it by at most CHORD of the groove's width.
+(s, b) by chords that leave it by at most CHORD of the groove's width, and next to an arc's centre by a part TURN^2 / 8
+of the distance to it.
 """
 
 from __future__ import annotations
@@ -36,6 +37,8 @@ from renderer.tables import (
 
 CHORD = 1e-4
 CHORDS = 64  # at most this many chords for one crossing of a piece
+TURN = 0.2  # the most that a chord turns about an arc's centre, radians
+CLOSEST = 1e-6  # rays that pass the centre closer than this part of the groove's width pass through it
 WIDER = 1e-3  # how much more than its width is followed of a groove by chords
 SINE_CHORDS = 96  # a period of a scale
 HAIR = 1e-6  # of a groove's half-width
@@ -351,19 +354,24 @@ def cut(
 
 
 @leaf
-def chords(profile: np.void, groove: np.void, piece: np.void, travel: float, closest: float) -> int:
-    """How many chords follow a ray along `travel` pattern units of an arc, `closest` to its centre."""
+def chords(profile: np.void, groove: np.void, piece: np.void, closest: float, turn: float) -> int:
+    """How many chords follow a ray around an arc while asinh(u / closest) changes by `turn`.
+
+    u is the place on the ray from its point nearest to the arc's centre, and `closest` that point's distance, pattern
+    units. A chord with such a step leaves the ray by step^2 / 8 of `closest` at the most, and turns about the centre by
+    no more than the step.
+    """
     width = (profile.right - profile.left) * groove.scale_max * piece.size
-    count = max(1.0, travel / math.sqrt(8.0 * max(closest, CHORD * width) * CHORD * width))
+    count = turn / min(TURN, math.sqrt(8.0 * CHORD * width / closest))
     if groove.scale_kind != SCALE_CONSTANT:
-        part = (piece.t1 - piece.t0) * min(travel / piece.length, 1.0)
+        part = (piece.t1 - piece.t0) * min(turn / (piece.length * abs(piece.curvature)), 1.0)
         if groove.scale_kind == SCALE_LINEAR:
             count = max(count, 64.0 * part)
         elif groove.scale_kind == SCALE_SINE:
             count = max(count, SINE_CHORDS * groove.scale_b * part)
         else:
             count = max(count, 4.0 * groove.table_count * part)
-    return int(math.ceil(min(count, CHORDS + 0.0)))
+    return int(math.ceil(min(max(count, 1.0), CHORDS + 0.0)))
 
 
 @leaf
@@ -454,6 +462,9 @@ def meet_piece(
     inner = max(size - (right if radius > 0.0 else -left) - more, 0.0)
     ax, ay, rx, ry = x0 - cx, y0 - cy, x1 - x0, y1 - y0
     a, h, c = rx * rx + ry * ry, ax * rx + ay * ry, ax * ax + ay * ay
+    speed = math.sqrt(a)
+    foot = -h / a if a > 0.0 else 0.0  # where the ray is closest to the centre
+    closest = max(math.hypot(ax + foot * rx, ay + foot * ry), CLOSEST * (right - left))
     o0, o1, i0, i1 = 0.0, 1.0, 2.0, 2.0
     if a <= 1e-30 * c:
         if not inner * inner <= c <= outer * outer:
@@ -472,37 +483,33 @@ def meet_piece(
     # Its ends are straight lines across it: how far inside of them the ray is at its two ends.
     ds0, ds1 = inside(piece, 0.0, x0, y0) + start_hair, inside(piece, 0.0, x1, y1) + start_hair
     df0, df1 = inside(piece, piece.length, x0, y0) + finish_hair, inside(piece, piece.length, x1, y1) + finish_hair
+    if i0 > 1.0:
+        i0 = i1 = foot  # there chords end, as they leave the ray most
     for crossing in range(2):
-        t0, t1 = o0, o1
-        if i0 <= 1.0:
-            if crossing == 0:
-                t1 = min(o1, i0)
-            else:
-                t0 = max(o0, i1)
-        elif crossing == 1:
-            break
+        t0, t1 = (o0, min(o1, i0)) if crossing == 0 else (max(o0, i1), o1)
         if t0 >= t1:
             continue
-        nearest = min(max(-h / a, t0), t1) if a > 0.0 else t0
-        closest = math.hypot(ax + nearest * rx, ay + nearest * ry)
-        count = chords(profile, groove, piece, math.sqrt(a) * (t1 - t0), closest)
+        begin, end = math.asinh((t0 - foot) * speed / closest), math.asinh((t1 - foot) * speed / closest)
+        count = chords(profile, groove, piece, closest, end - begin)
         s0, b0 = locate(piece, x0 + t0 * rx, y0 + t0 * ry)
         f0, _ = scale_at(pattern.scale_table, groove, piece, s0)
         ta = t0
         for k in range(count):
-            tc = t0 + (t1 - t0) * (k + 1) / count
+            tc = t1
+            if k < count - 1:
+                tc = foot + math.sinh(begin + (end - begin) * (k + 1) / count) * closest / speed
             s1, b1 = locate(piece, x0 + tc * rx, y0 + tc * ry)
             f1, _ = scale_at(pattern.scale_table, groove, piece, s1)
             if piece.closed == 1 or abs(s1 - s0) <= math.pi * size:  # not across the far side, where s starts again
                 u0, u1 = 0.0, 1.0
-                for end in range(2 if piece.closed == 0 else 0):
+                for which in range(2 if piece.closed == 0 else 0):
                     # the line across an end meets the ring once more: there it does not count
-                    at = 0.0 if end == 0 else piece.length
-                    lean = math.atan(piece.start_mitre) if end == 0 else -math.atan(piece.finish_mitre)
+                    at = 0.0 if which == 0 else piece.length
+                    lean = math.atan(piece.start_mitre) if which == 0 else -math.atan(piece.finish_mitre)
                     angle = (0.5 * (s0 + s1) - at) / size + math.copysign(lean, lean * radius)
-                    d0, d1 = (ds0, ds1) if end == 0 else (df0, df1)
+                    d0, d1 = (ds0, ds1) if which == 0 else (df0, df1)
                     if abs(angle) > 0.5 * math.pi:
-                        if (angle < 0.0) == (end == 0):
+                        if (angle < 0.0) == (which == 0):
                             u1 = -1.0
                         continue
                     d0, d1 = d0 + ta * (d1 - d0), d0 + tc * (d1 - d0)

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from bench.stability import exact
-from bench.stability.scenes import PIXELS, Case, setting
+from bench.stability.scenes import PIXELS, Case, axes, setting
 from bench.stability.sweep import ITSELF, METHODS, Score, of, outlies, picture, run
 
 SAMPLES = 256
@@ -39,6 +39,8 @@ STRAIGHT: list[dict[str, float]] = [
     {"apart": 0},
     {"number": 1},
     {"number": 10000},
+    {"run": 0, "number": 1},
+    {"run": 0, "number": 10},
     {"view": 0.1, "footprint": 1e-4},
     {"view": 0.1, "aspect": 10},
     {"view": 0.1, "light": 0.1},
@@ -50,6 +52,7 @@ STRAIGHT: list[dict[str, float]] = [
 OTHERS: list[dict[str, float]] = [
     {"radius": 1000},
     {"radius": 3},
+    {"radius": 1, "footprint": 1e-3},
     {"radius": 0.5},
     {"radius": 0.1},
     {"slope": 1e-3},
@@ -89,6 +92,27 @@ def test_no_method_breaks(values: dict[str, float]) -> None:
         return 1.5 * other.rms + result.floor + 0.5 * TOLERANCE
 
     assert result.scores["auto"].rms <= allowed(result.scores["csg"])
+
+
+@pytest.mark.parametrize("footprint", [1e-4, 0.01])
+def test_the_tip_in_a_circle_of_the_half_width(footprint: float) -> None:
+    """What is left inside is a cone whose tip is the circle's centre, at the height of the plate, before the groove's
+    floor. From straight above, vertical rays meet it in closed form; the light is steep enough to shade nothing."""
+    case = of({"radius": 1.0, "footprint": footprint, "view": 90.0, "light": 70.0})
+    made = setting(case, PIXELS)
+    origin, forward, right, down = axes(made.scene["camera"], PIXELS)
+    steep = case.aspect / case.run  # of the cone, 59 degrees: the light at 70 sees all of it
+    light = np.array(made.light)
+    truth = np.zeros(PIXELS[::-1])
+    offsets = (np.arange(64) + 0.5) / 64
+    for y, x in np.ndindex(truth.shape):
+        across, along = np.meshgrid(x + offsets - 0.5 * PIXELS[0], y + offsets - 0.5 * PIXELS[1])
+        rays = forward + across[..., None] * right + along[..., None] * down
+        place = origin + rays * (-origin[2] / rays[..., 2:])
+        slope = steep * place[..., :2] / np.hypot(place[..., 0], place[..., 1])[..., None]
+        truth[y, x] = np.mean(slope @ light[:2] + light[2]) / math.hypot(steep, 1.0)
+    for method in ("auto", "csg", "area"):
+        assert picture(made, PIXELS, method, 1024, 0) == pytest.approx(truth, abs=0.002), method
 
 
 def test_what_fails_by_nature_is_not_chosen() -> None:

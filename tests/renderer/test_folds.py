@@ -249,8 +249,9 @@ def test_two_repeats_that_take_turns_are_one_family() -> None:
         {"profile": scaled([[-0.6, 0.0], [0.0, -0.3], [0.6, 0.0]], 0.008)},
         {"scale": {"type": "sine", "amplitude": 0.5, "periods": 3}},
         {"profile": scaled([[-0.2, 0.0], [-0.3, -0.3], [0.3, -0.3], [0.2, 0.0]], 0.008)},
+        {"profile": scaled([[-0.5, 0.0], [-0.5, -0.3], [0.5, -0.3], [0.5, 0.0]], 0.008)},
     ],
-    ids=["overlap", "scale", "overhang"],
+    ids=["overlap", "scale", "overhang", "no wall between"],
 )
 def test_what_does_not_fold(change: Json) -> None:
     assert compiled([linear(250, V)[0] | change]).families["folds"].tolist() == [0]
