@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from renderer.geometry.curve import ROUGH, is_curved, light_over, sight_over, straightened, turned, unsure
 from renderer.geometry.query import find, nearby
-from renderer.geometry.random import jitter, seed_of
+from renderer.geometry.random import jitter, seed_of, strewn
 from renderer.geometry.rays import follow
 from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_ray, thin_of
 from renderer.geometry.spans import events
@@ -23,12 +23,10 @@ from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.shading import (
     ambient,
-    any_mirror,
-    dot,
     light_to_pattern,
     lit_by,
-    mirrored,
     normal_to_world,
+    scatter,
     to_world,
     unit,
     white,
@@ -55,7 +53,7 @@ def csg(
 
     samples: at least so many a footprint, in a grid of strata, where the tolerance is 0; else as many as that asks for,
     which is the error relative to a white surface in the same light. sparing: NOT_MINE, where that is more than
-    MOST * MOST. bounces: how often light is followed from mirror to mirror. slots: rows of `materials` for the
+    MOST * MOST. bounces: how often light is followed from facet to facet. slots: rows of `materials` for the
     pattern's facets, the object's own first.
     """
     capacity = max(pattern.near, SHARED)
@@ -67,7 +65,6 @@ def csg(
     high, low = pattern.height, -pattern.depth
     thin = thin_of(pattern)
     above = np.zeros(MOST)
-    shows = bounces > 0 and any_mirror(materials, slots)
     for index in chosen:
         footprint = footprints[index]
         frame = frames[footprint.frame]
@@ -115,7 +112,7 @@ def csg(
         target = 0.0
         if tolerance > 0.0:
             across = down = FIRST
-            if 0 <= shared <= FEW and not shows:
+            if 0 <= shared <= FEW and bounces == 0:
                 across, down, corners = PROBE, PROBE, 4
             target = tolerance
             if curved and straightened(pattern, frame, view.p, view.q, footprint.blocked, lights) > ROUGH:
@@ -159,7 +156,9 @@ def csg(
                 n_world = normal_to_world(frame, facing)
                 at_world = to_world(frame, x, y, at)
                 e = unit((eye[0] - at_world[0], eye[1] - at_world[1], eye[2] - at_world[2]))
-                colour = ambient(material, lighting.sky, albedo, n_world, e)
+                colour = (material.emissive[0], material.emissive[1], material.emissive[2])
+                if bounces == 0:
+                    colour = ambient(material, lighting, albedo, n_world, e)
                 red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 lit = np.uint64(0)
                 off = lift(pattern, found, m) / math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
@@ -185,11 +184,12 @@ def csg(
                             continue
                     lit |= np.uint64(1) << np.uint64(l)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
-                if shows and i >= 0:
-                    through = mirrored(material, dot(n_world, e))
+                if bounces > 0:
+                    lobe, bu, bv = strewn(i, seed, footprint.x, footprint.y)
+                    out, through = scatter(material, n_world, e, lobe, bu, bv)
                     if max(through[0], through[1], through[2]) > 0.0:
                         colour = follow(
-                            bounces, through, n_world, e, (sx, sy, sw), footprint.blocked, pattern, frame, lighting,
+                            bounces, through, out, (sx, sy, sw), i, seed, footprint, pattern, frame, lighting,
                             materials, slots, albedo, around, spans,
                         )  # fmt: skip
                         red, green, blue = red + colour[0], green + colour[1], blue + colour[2]

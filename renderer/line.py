@@ -53,7 +53,20 @@ from renderer.geometry.reflection import reflections
 from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, spans
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, keep, kernel, leaf
-from renderer.shading import ambient, any_mirror, are_distant, dot, lit_by, mirrored, normal_to_world, to_world, unit
+from renderer.shading import (
+    DIFFUSE,
+    GLOSSY,
+    MIRROR,
+    ambient,
+    answers,
+    are_distant,
+    dot,
+    lit_by,
+    mirrored,
+    normal_to_world,
+    to_world,
+    unit,
+)  # fmt: skip
 from renderer.tables import BASE, LINE, NOT_MINE, SEGMENT_METHOD, Camera, Floats, Lighting, Pattern
 
 # How the kernel treats what is not parallel, isolated and straight.
@@ -118,7 +131,7 @@ def tint_of(
             colour = lit_by(lights[l], material, n, e, at)
             for c in range(3):
                 tint[l, c] += colour[c] / places
-        colour = ambient(material, lighting.sky, albedo, n, e)
+        colour = ambient(material, lighting, albedo, n, e)
         for c in range(3):
             tint[len(lights), c] += colour[c] / places
     return row
@@ -197,8 +210,8 @@ def line(
     """Shade the footprints `chosen` of one object; write their radiance (n, 3) and the method each took.
 
     What has too many grooves in it is not its own, whatever the mode: STRICT, LOOSE or PAPER. bounces: how often light
-    is followed from mirror to mirror; STRICT does where no mirror sees another groove, as nothing stands above the
-    plane. slots: rows of `materials` for the pattern's facets, the object's own first.
+    is followed; this does so from mirror to mirror where nothing stands above the plane. slots: rows of `materials` for
+    the pattern's facets, the object's own first.
     """
     owned = work_for(pattern, len(lighting.lights))
     work, pattern, frames, lighting = borrow(owned), borrow(pattern), borrow(frames), borrow(lighting)
@@ -209,7 +222,8 @@ def line(
     matte = True
     for slot in slots:
         matte = matte and materials[slot].metallic == 0.0 and materials[slot].f90 == 0.0
-    shows = bounces > 0 and any_mirror(materials, slots)
+    answer = answers(materials, slots) if bounces > 0 else 0
+    shows, samples = answer & MIRROR != 0, answer & (DIFFUSE | GLOSSY) != 0
     ridged = pattern.height > 0.0
     most = 0  # points of a cross-section
     for profile in pattern.profiles:
@@ -223,6 +237,8 @@ def line(
         curved = not paper and is_curved(frame)
         clear = meet_lights(curved, pattern, frame, view, footprint.blocked, lights, work)
         if strict and (not clear or eye_w <= LEVEL * pattern.height or (shows and ridged)):
+            continue
+        if samples and ridged:
             continue
         eye_p, eye_q = (frame.eye[0] - view.p) / eye_w, (frame.eye[1] - view.q) / eye_w
         grooves = entries = 0
@@ -248,6 +264,8 @@ def line(
                     continue
             grooves = pick(strict, pattern, view, r, count, work)
         chords = ROUND if curved else 0
+        if samples and grooves > 0:
+            continue
         if grooves < 0 or (ridged and not folded and grooves * (most + 1 + chords) + 2 + chords > POINTS):
             continue
         method[index] = BASE
@@ -390,7 +408,7 @@ def line(
                     n_world = normal_to_world(frame, turned(frame, p - view.p, q - view.q, 0.0, (0.0, 0.0, 1.0)))
                 at = to_world(frame, p, q, 0.0)
                 e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
-                colour = ambient(material, lighting.sky, albedo, n_world, e)
+                colour = ambient(material, lighting, albedo, n_world, e)
                 red, green, blue = red + part * colour[0], green + part * colour[1], blue + part * colour[2]
                 if shows:
                     colour = mirrored(material, dot(n_world, e))

@@ -31,7 +31,6 @@ from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
-from renderer.shading import any_mirror
 from renderer.tables import BARE, BASE, NOT_MINE, Floats, Pattern
 from renderer.trace import Truth
 
@@ -157,14 +156,15 @@ class Frame:
             relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
             timed("relief", start)
             return
-        bounces = settings.bounces > 0 and any_mirror(scene.materials, scene.slots[row])
         if settings.method in ("lines", "area") and pattern is not BARE:
             left = chosen
         else:
             line(MODES.get(settings.method, LOOSE), settings.bounces, pattern, seen.footprints, chosen, *rest)
             timed("line", start)
             left = chosen[method[chosen] == NOT_MINE]
-        if len(left) and settings.method in ("lines", "area", "auto") and not bounces:  # else it is left to samples
+        if (
+            len(left) and settings.method in ("lines", "area", "auto") and settings.bounces == 0
+        ):  # else it is left to samples
             start = time.perf_counter()
             most = FEW_STRIPS if settings.method == "auto" else STRIPS
             flat, ordered = int(row) in self.flat, in_blocks(seen.footprints, left)
@@ -177,7 +177,7 @@ class Frame:
                 area_sampling(settings.tolerance, most, flat, pattern, seen.footprints, ordered, *rest)
             timed("lines" if settings.method == "lines" else "area", start)
             left = left[method[left] == NOT_MINE]
-        if len(left) and settings.method == "auto" and not bounces:
+        if len(left) and settings.method == "auto" and settings.bounces == 0:
             sample(left, settings.tolerance, sparing=True)
             left = in_blocks(seen.footprints, left[method[left] == NOT_MINE])
             start = time.perf_counter()  # with as many strips as there is room for, where samples do not do
@@ -291,11 +291,10 @@ def _truth(compiled: CompiledScene, bounces: int) -> Truth:
     bodies = []
     for row, obj in enumerate(compiled.objects):
         pattern = compiled.patterns[obj["pattern"]] if obj["pattern"] >= 0 else BARE
-        followed = bounces if any_mirror(compiled.materials, compiled.slots[row]) else 0
         try:
             bodies.append(
                 body.build(
-                    row, obj, pattern, compiled.triangles, compiled.camera.origin, compiled.lighting.lights, followed
+                    row, obj, pattern, compiled.triangles, compiled.camera.origin, compiled.lighting.lights, bounces
                 )
             )
         except ValueError as error:

@@ -410,7 +410,7 @@ def relief(
                         continue
                     material = materials[slots[t.slots[column]]]
                     if l < 0:
-                        colour = ambient(material, lighting.sky, albedo, n_world, e)
+                        colour = ambient(material, lighting, albedo, n_world, e)
                     else:
                         colour = lit_by(lights[l], material, n_world, e, at_world)
                     r, g, b = r + share * colour[0], g + share * colour[1], b + share * colour[2]

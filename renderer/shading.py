@@ -124,14 +124,89 @@ def mirrored(material: np.void, cosine: float) -> Vector:
     )
 
 
+@leaf
+def scatter(material: np.void, n: Vector, e: Vector, lobe: float, u: float, v: float) -> tuple[Vector, Vector]:
+    """A direction L that `material` gets light from for E, and the weight of radiance from there, RGB.
+
+    It is drawn, by three numbers from [0, 1), about as the material weighs directions: by the cosine, or by the normals
+    that E sees of GGX (Heitz 2018, "Sampling the GGX distribution of visible normals"), or it is the mirror's. The
+    weight is BRDF times cosine over the density, 0 where L is below the surface; its mean is the albedo.
+    """
+    none = (0.0, 0.0, 0.0)
+    ne = dot(n, e)
+    if ne <= 0.0:
+        return n, none
+    base, metallic = material.base_color, material.metallic
+    schlick = (1.0 - min(ne, 1.0)) ** 5
+    brightness = (base[0] + base[1] + base[2]) / 3.0
+    coat = material.f0 + (material.f90 - material.f0) * schlick
+    gloss = (1.0 - metallic) * coat + metallic * (brightness + (1.0 - brightness) * schlick)
+    matt = (1.0 - metallic) * (1.0 - material.transmission) * (1.0 - coat) * brightness
+    if gloss + matt <= 0.0:
+        return n, none
+    glossy = gloss / (gloss + matt)  # the part of the drawings that the gloss gets
+    # axes across the normal (Duff et al. 2017)
+    sign = math.copysign(1.0, n[2])
+    a = -1.0 / (sign + n[2])
+    b = n[0] * n[1] * a
+    s, t = (1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0]), (b, sign + n[1] * n[1] * a, -n[1])
+    turn = 2.0 * math.pi * v
+    alpha = material.alpha
+    if lobe < glossy and alpha == 0.0:
+        clear = mirrored(material, ne)
+        mirror = (2.0 * ne * n[0] - e[0], 2.0 * ne * n[1] - e[1], 2.0 * ne * n[2] - e[2])
+        return mirror, (clear[0] / glossy, clear[1] / glossy, clear[2] / glossy)
+    if lobe < glossy:
+        ex, ey, ez = alpha * dot(s, e), alpha * dot(t, e), ne  # E where the surface is a hemisphere
+        length = math.sqrt(ex * ex + ey * ey + ez * ez)
+        ex, ey, ez = ex / length, ey / length, ez / length
+        # a point of the part of the sphere that E's mirror images fill (Dupuy and Benyoub 2023)
+        z = (1.0 - u) * (1.0 + ez) - ez
+        across = math.sqrt(min(max(1.0 - z * z, 0.0), 1.0))
+        hx, hy, hz = alpha * (across * math.cos(turn) + ex), alpha * (across * math.sin(turn) + ey), max(z + ez, 0.0)
+        h = unit(
+            (hx * s[0] + hy * t[0] + hz * n[0], hx * s[1] + hy * t[1] + hz * n[1], hx * s[2] + hy * t[2] + hz * n[2])
+        )
+        eh = 2.0 * dot(e, h)
+        l = unit((eh * h[0] - e[0], eh * h[1] - e[1], eh * h[2] - e[2]))
+    else:
+        x, y, z = math.sqrt(u) * math.cos(turn), math.sqrt(u) * math.sin(turn), math.sqrt(max(1.0 - u, 0.0))
+        l = unit((x * s[0] + y * t[0] + z * n[0], x * s[1] + y * t[1] + z * n[1], x * s[2] + y * t[2] + z * n[2]))
+    nl = dot(n, l)
+    if nl <= 0.0:
+        return l, none
+    density = (1.0 - glossy) * nl / math.pi
+    if alpha > 0.0:
+        h = unit((l[0] + e[0], l[1] + e[1], l[2] + e[2]))
+        a2, nh = alpha * alpha, dot(n, h)
+        spike = nh * nh * (a2 - 1.0) + 1.0
+        density += glossy * a2 / (math.pi * spike * spike) * 0.5 / (ne + math.sqrt(ne * ne * (1.0 - a2) + a2))
+    weight = reflect(material, n, e, l)
+    return l, (weight[0] / density, weight[1] / density, weight[2] / density)
+
+
+@leaf
+def sky_from(lighting: Lighting, direction: Vector) -> Vector:
+    """Radiance of the sky in a world direction."""
+    sky = lighting.sky
+    return sky[0], sky[1], sky[2]
+
+
+DIFFUSE, GLOSSY, MIRROR = 1, 2, 4  # bits of `answers`
+
+
 @kernel
-def any_mirror(materials: NDArray[np.void], slots: NDArray[np.int32]) -> bool:
-    """Whether any of these rows of `materials` is an ideal mirror."""
-    some = False
+def answers(materials: NDArray[np.void], slots: NDArray[np.int32]) -> int:
+    """How these rows of `materials` send light on, all together: a sum of DIFFUSE, GLOSSY and MIRROR."""
+    bits = 0
     for slot in slots:
         material = materials[slot]
-        some = some or (material.alpha == 0.0 and (material.metallic > 0.0 or material.f90 > 0.0))
-    return some
+        if material.metallic > 0.0 or material.f90 > 0.0:
+            bits |= GLOSSY if material.alpha > 0.0 else MIRROR
+        base = material.base_color
+        if (1.0 - material.metallic) * (1.0 - material.transmission) * max(base[0], base[1], base[2]) > 0.0:
+            bits |= DIFFUSE
+    return bits
 
 
 @leaf
@@ -173,12 +248,12 @@ def white(lighting: Lighting, at: Vector) -> float:
 
 
 @leaf
-def ambient(material: np.void, sky: NDArray[np.float64], albedo: NDArray[np.float64], n: Vector, e: Vector) -> Vector:
+def ambient(material: np.void, lighting: Lighting, albedo: NDArray[np.float64], n: Vector, e: Vector) -> Vector:
     """Radiance to E under the constant sky, unoccluded, and the material's own light.
 
     `albedo` is the table of `gloss_albedo`.
     """
-    glow, base = material.emissive, material.base_color
+    glow, base, sky = material.emissive, material.base_color, lighting.sky
     if sky[0] == 0.0 and sky[1] == 0.0 and sky[2] == 0.0:
         return glow[0], glow[1], glow[2]
     diffuse = (1.0 - material.metallic) * (1.0 - material.transmission)

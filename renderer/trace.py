@@ -22,9 +22,9 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from renderer.body import Base, Body, facing
-from renderer.geometry.random import jitter, seed_of
+from renderer.geometry.random import drawn, jitter, seed_of, strewn
 from renderer.kernel import kernel, leaf
-from renderer.shading import Vector, ambient, dot, lit_by, mirrored, unit
+from renderer.shading import Vector, ambient, dot, lit_by, scatter, sky_from, unit
 from renderer.tables import CYLINDER, GEOMETRY, MESH, NONE, POINT, RECTANGLE, Camera, Floats, Ints, Lighting
 
 OFFSET = 4e-7
@@ -186,6 +186,7 @@ class Truth:
             start = nowhere(count)
             start.point[:] = camera.origin
             pixel = np.repeat(np.arange(begin, stop), each)
+            number = np.tile(np.arange(each), stop - begin)
             weight = np.full((count, 3), 1.0 / each)
             for bounce in range(bounces + 1):
                 hits = self._meet(start, directions)
@@ -194,13 +195,17 @@ class Truth:
                 lit = np.zeros((len(lighting.lights), len(directions)), np.bool_)
                 for row, light in enumerate(lighting.lights):
                     lit[row] = self._lit(light, hits)
-                gather(lighting, materials, names, first, albedo, directions, pixel, weight, hits, lit, image)
-                if bounce < bounces:
-                    which = np.flatnonzero(reflect(materials, names, first, directions, weight, hits))
+                last = bounce == bounces
+                gather(lighting, materials, names, first, albedo, last, directions, pixel, weight, hits, lit, image)
+                if not last:
+                    goes = go_on(
+                        materials, names, first, seed, bounce, x, y, width, pixel, number, directions, weight, hits
+                    )
+                    which = np.flatnonzero(goes)
                     if not len(which):
                         break
                     start = Hits._make(column[which] for column in hits)
-                    directions, weight, pixel = directions[which], weight[which], pixel[which]
+                    directions, weight, pixel, number = directions[which], weight[which], pixel[which], number[which]
 
     def _meet(self, start: Hits, directions: Floats) -> Hits:
         """What rays from the points of `start` meet."""
@@ -578,19 +583,25 @@ def leave(
 
 @kernel
 def gather(
-    lighting: Lighting, materials: NDArray[np.void], names: Ints, first: NDArray[np.int64], albedo: Floats,
+    lighting: Lighting, materials: NDArray[np.void], names: Ints, first: NDArray[np.int64], albedo: Floats, last: bool,
     directions: Floats, pixel: NDArray[np.int64], weight: Floats, hits: Hits, lit: Bools, image: Floats,
 ) -> None:  # fmt: skip
-    """Add what the rays see to their pixels. names: material rows of all bodies, each from `first` on."""
-    lights, sky = lighting.lights, lighting.sky
+    """Add what the rays see to their pixels. names: material rows of all bodies, each from `first` on.
+
+    The last time surfaces are lit by all of the sky; before that rays go on to find what they see of it.
+    """
+    lights = lighting.lights
     for k in range(len(directions)):
-        red, green, blue = sky[0], sky[1], sky[2]
-        if hits.body[k] >= 0:
+        if hits.body[k] < 0:
+            red, green, blue = sky_from(lighting, unit((directions[k, 0], directions[k, 1], directions[k, 2])))
+        else:
             n = (hits.normal[k, 0], hits.normal[k, 1], hits.normal[k, 2])
             at = (hits.point[k, 0], hits.point[k, 1], hits.point[k, 2])
             e = unit((-directions[k, 0], -directions[k, 1], -directions[k, 2]))
             material = materials[names[first[hits.body[k]] + hits.slot[k] + 1]]
-            red, green, blue = ambient(material, sky, albedo, n, e)
+            red, green, blue = material.emissive[0], material.emissive[1], material.emissive[2]
+            if last:
+                red, green, blue = ambient(material, lighting, albedo, n, e)
             for l in range(len(lights)):
                 if lit[l, k]:
                     colour = lit_by(lights[l], material, n, e, at)
@@ -601,22 +612,31 @@ def gather(
 
 
 @kernel
-def reflect(
-    materials: NDArray[np.void], names: Ints, first: NDArray[np.int64], directions: Floats, weight: Floats, hits: Hits
-) -> Bools:
-    """Which rays a mirror sends on; their directions and weights are made those of the reflected ones."""
+def go_on(
+    materials: NDArray[np.void], names: Ints, first: NDArray[np.int64], seed: int, bounce: int, x: int, y: int,
+    width: int, pixel: NDArray[np.int64], number: NDArray[np.int64], directions: Floats, weight: Floats, hits: Hits,
+) -> Bools:  # fmt: skip
+    """Which rays are followed on from what they hit; their directions and weights are made those of the next ones.
+
+    number: of a pixel's samples. The first time directions are spread evenly over these.
+    """
     goes = np.zeros(len(directions), np.bool_)
     for k in range(len(directions)):
         if hits.body[k] < 0:
             continue
         n = (hits.normal[k, 0], hits.normal[k, 1], hits.normal[k, 2])
         e = unit((-directions[k, 0], -directions[k, 1], -directions[k, 2]))
-        cosine = dot(n, e)
-        colour = mirrored(materials[names[first[hits.body[k]] + hits.slot[k] + 1]], cosine)
-        if cosine <= 0.0 or max(colour[0], colour[1], colour[2]) <= 0.0:
+        material = materials[names[first[hits.body[k]] + hits.slot[k] + 1]]
+        px, py = float(x + pixel[k] % width), float(y + pixel[k] // width)
+        if bounce == 0:
+            lobe, u, v = strewn(number[k], seed, px + 0.5, py)
+        else:
+            lobe, u, v = drawn(number[k], bounce, seed, px, py + 0.5)
+        direction, colour = scatter(material, n, e, lobe, u, v)
+        if max(colour[0], colour[1], colour[2]) <= 0.0:
             continue
         goes[k] = True
         for c in range(3):
-            directions[k, c] = 2.0 * cosine * n[c] - e[c]
+            directions[k, c] = direction[c]
             weight[k, c] *= colour[c]
     return goes

@@ -1,4 +1,4 @@
-"""Rays from mirror to mirror over the solid, one by one, met by the spans of added and removed material (003)."""
+"""Rays from facet to facet of the solid, one by one, met by the spans of added and removed material (003)."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.query import Nearby
+from renderer.geometry.random import drawn
 from renderer.geometry.solid import (
     DOWN,
     OPEN,
@@ -27,14 +28,17 @@ from renderer.shading import (
     Vector,
     ambient,
     direction_to_pattern,
-    dot,
     light_to_pattern,
     lit_by,
-    mirrored,
     normal_to_world,
+    scatter,
+    sky_from,
     to_world,
 )
 from renderer.tables import Floats, Lighting, Pattern
+
+LEVEL = 1e-3
+"""A ray's slope to the plane is taken for at least this: more level ones run over very many grooves to no end."""
 
 
 @callee
@@ -50,30 +54,30 @@ def meet_far(
 
 @callee
 def follow(
-    bounces: int, through: Vector, n: Vector, e: Vector, start: Vector, blocked: np.uint64, pattern: Pattern,
-    frame: np.void, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats,
-    found: Nearby, spans: Events,
+    bounces: int, through: Vector, way: Vector, start: Vector, number: int, seed: int, footprint: np.void,
+    pattern: Pattern, frame: np.void, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32],
+    albedo: Floats, found: Nearby, spans: Events,
 ) -> Vector:  # fmt: skip
-    """The radiance that a mirror with the unit normal n (world) sends to E of what it shows, from mirror to mirror.
+    """What comes back along the ray that leaves `start` (off the surface, pattern space) by `way` (unit, world), times
+    `through`, RGB: the light of what it meets, and of what the rays from there meet, up to so many `bounces`.
 
-    through: the part that the mirror sends on. start: off its surface, pattern space. blocked: lights that do not
-    reach the footprint.
+    Each of a footprint's samples, of that number, draws its own rays. Where the last one meets the surface, that is lit
+    by all of the sky.
     """
-    lights, sky = lighting.lights, lighting.sky
+    lights = lighting.lights
     red = green = blue = 0.0
     x, y, w = start
-    for _ in range(bounces):
-        cosine = 2.0 * dot(n, e)
-        e = (e[0] - cosine * n[0], e[1] - cosine * n[1], e[2] - cosine * n[2])  # from what is seen to the mirror
-        d = direction_to_pattern(frame, (-e[0], -e[1], -e[2]))
-        rise = leveled(d[0], d[1], d[2])
+    for bounce in range(bounces):
+        d = direction_to_pattern(frame, way)
+        rise = leveled(d[0], d[1], d[2], LEVEL)
         gp, gq = d[0] / rise, d[1] / rise
-        top, bottom, way = w, -pattern.depth - thin_of(pattern), DOWN
+        top, bottom, sense = w, -pattern.depth - thin_of(pattern), DOWN
         if rise > 0.0:
-            top, bottom, way = pattern.height + thin_of(pattern), w, UP
-        m = meet_far(pattern, found, spans, x, y, w, gp, gq, top, bottom, way)
+            top, bottom, sense = pattern.height + thin_of(pattern), w, UP
+        m = meet_far(pattern, found, spans, x, y, w, gp, gq, top, bottom, sense)
         if m.w == -math.inf:
             if rise > 0.0:
+                sky = sky_from(lighting, way)
                 red, green, blue = red + through[0] * sky[0], green + through[1] * sky[1], blue + through[2] * sky[2]
             break
         p, q = x - w * gp, y - w * gq
@@ -88,22 +92,28 @@ def follow(
         material = materials[slots[slot]]
         off = lift(pattern, found, m) / math.sqrt(across[0] ** 2 + across[1] ** 2 + across[2] ** 2)
         at = to_world(frame, x, y, w)
-        n = normal_to_world(frame, across)
+        n, e = normal_to_world(frame, across), (-way[0], -way[1], -way[2])
         x, y, w = x + off * across[0], y + off * across[1], w + off * across[2]
-        colour = ambient(material, sky, albedo, n, e)
+        last = bounce == bounces - 1
+        colour = (material.emissive[0], material.emissive[1], material.emissive[2])
+        if last:
+            colour = ambient(material, lighting, albedo, n, e)
         for l in range(len(lights)):
-            if (blocked >> np.uint64(l)) & np.uint64(1):
+            if (footprint.blocked >> np.uint64(l)) & np.uint64(1):
                 continue
             light = light_to_pattern(frame, lights[l])
             lit = lit_by(lights[l], material, n, e, at)
             if light[2] <= 0.0 or max(lit[0], lit[1], lit[2]) <= 0.0:
                 continue
-            lp, lq, top, bottom, way = shadow_ray(pattern, light, x, y, w)
-            if meet_far(pattern, found, spans, x, y, w, lp, lq, top, bottom, way).w == -math.inf:
+            lp, lq, top, bottom, sense = shadow_ray(pattern, light, x, y, w)
+            if meet_far(pattern, found, spans, x, y, w, lp, lq, top, bottom, sense).w == -math.inf:
                 colour = (colour[0] + lit[0], colour[1] + lit[1], colour[2] + lit[2])
         red, green, blue = red + through[0] * colour[0], green + through[1] * colour[1], blue + through[2] * colour[2]
-        clear = mirrored(material, dot(n, e))
-        through = (through[0] * clear[0], through[1] * clear[1], through[2] * clear[2])
+        if last:
+            break
+        lobe, u, v = drawn(number, bounce + 1, seed, footprint.x, footprint.y)
+        way, weight = scatter(material, n, e, lobe, u, v)
+        through = (through[0] * weight[0], through[1] * weight[1], through[2] * weight[2])
         if max(through[0], through[1], through[2]) <= 0.0:
             break
     return red, green, blue

@@ -294,7 +294,7 @@ def reflections(
                 b, t, w = onto_facet(d, b, t, w, j, section)
                 at = place_in_world(frame, view, tx, ty, b, t, w)
                 e = towards(d, at, frame, view, tx, ty)
-                colour = ambient(material, sky, albedo, n, e) if l < 0 else lit_by(lights[l], material, n, e, at)
+                colour = ambient(material, lighting, albedo, n, e) if l < 0 else lit_by(lights[l], material, n, e, at)
                 red += through[0] * colour[0] / sides
                 green += through[1] * colour[1] / sides
                 blue += through[2] * colour[2] / sides

@@ -266,7 +266,7 @@ def colour_at(
     eye = to_world(frame, frame.eye[0], frame.eye[1], frame.eye[2])
     e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
     if light < 0:
-        return ambient(material, lighting.sky, albedo, n, e)
+        return ambient(material, lighting, albedo, n, e)
     return lit_by(lighting.lights[light], material, n, e, at)
 
 

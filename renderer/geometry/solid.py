@@ -337,7 +337,7 @@ def shadow_ray(
     point, and its way. Where it has no height, nothing stands in it."""
     high = pattern.height + thin_of(pattern)
     gp, gq, rise = light[0] - light[3] * x, light[1] - light[3] * y, light[2] - light[3] * w
-    rise = leveled(gp, gq, rise)
+    rise = leveled(gp, gq, rise, LEVEL)
     gp, gq = gp / rise, gq / rise
     if rise < 0.0:
         return gp, gq, w, w + rise, DOWN
@@ -351,7 +351,7 @@ def thin_of(pattern: Pattern) -> float:
 
 
 @leaf
-def leveled(gp: float, gq: float, rise: float) -> float:
+def leveled(gp: float, gq: float, rise: float, least: float) -> float:
     """The height that a ray gains along (gp, gq), a little where it is level: rays are followed by height."""
-    level = LEVEL * math.hypot(gp, gq)
+    level = least * math.hypot(gp, gq)
     return math.copysign(level, rise) if abs(rise) < level else rise
