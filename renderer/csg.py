@@ -47,20 +47,23 @@ def csg(
     samples: int, bounces: int, tolerance: float, sparing: bool, seed: int, pattern: Pattern,
     footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera,
     lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: NDArray[np.float64],
-    radiance: NDArray[np.float64], method: NDArray[np.uint8],
+    radiance: NDArray[np.float64], method: NDArray[np.uint8], leaving: NDArray[np.void], gone: NDArray[np.int64],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
     samples: at least so many a footprint, in a grid of strata, where the tolerance is 0; else as many as that asks for,
     which is the error relative to a white surface in the same light. sparing: NOT_MINE, where that is more than
-    MOST * MOST. bounces: how often light is followed from facet to facet. slots: rows of `materials` for the
-    pattern's facets, the object's own first.
+    MOST * MOST. bounces: how often light is followed from facet to
+    facet, by no more than `samples` rays a footprint. slots: rows of `materials` for the
+    pattern's facets, the object's own first. leaving: room for each sample's RAY (`rays.follow`), if others are to meet
+    them; `gone` (1,) is how many there are.
     """
     capacity = max(pattern.near, SHARED)
     owned = nearby(pattern, capacity), events(pattern), nearby(pattern, capacity)
     found, spans, around = borrow(owned[0]), borrow(owned[1]), borrow(owned[2])
     pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
+    leaving, gone = borrow(leaving), borrow(gone)
     lights, eye = lighting.lights, camera.origin
     high, low = pattern.height, -pattern.depth
     thin = thin_of(pattern)
@@ -108,6 +111,7 @@ def csg(
 
         across = int(math.ceil(math.sqrt(samples)))
         down = (samples + across - 1) // across
+        most = MOST if bounces == 0 else max(across, FIRST)  # rays from facet to facet take their time
         corners = 0
         target = 0.0
         if tolerance > 0.0:
@@ -121,6 +125,7 @@ def csg(
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0
         taken = looked = 0
+        departed = gone[0]
         while True:
             red = green = blue = 0.0
             taken = 0
@@ -189,8 +194,9 @@ def csg(
                     out, through = scatter(material, n_world, e, lobe, bu, bv)
                     if max(through[0], through[1], through[2]) > 0.0:
                         colour = follow(
-                            bounces, through, out, (sx, sy, sw), i, seed, footprint, pattern, frame, lighting,
-                            materials, slots, albedo, around, spans,
+                            bounces, through, out, (sx, sy, sw), i, seed, index, footprint.x, footprint.y,
+                            footprint.blocked, pattern, frame, lighting, materials, slots, albedo, around, spans,
+                            leaving, gone,
                         )  # fmt: skip
                         red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 if i == -corners:
@@ -217,7 +223,7 @@ def csg(
             if corners == 0 or alike:
                 pairs = across * (down - 1) + down * (across - 1)
                 error = math.sqrt(unlike / (2.0 * pairs) / taken)
-                if error <= target or across >= MOST:
+                if error <= target or across >= most:
                     break
             if corners > 0:
                 across, down, corners = FIRST, FIRST, 0
@@ -226,7 +232,11 @@ def csg(
             if sparing and across > MOST:
                 method[index] = NOT_MINE
                 break
-            across = down = min(across, MOST)
+            across = down = min(across, most)
+        for k in range(departed, gone[0]):
+            leaving[k].through[0] /= taken
+            leaving[k].through[1] /= taken
+            leaving[k].through[2] /= taken
         radiance[index, 3] = error / SURE
         if curved:
             radiance[index, 3] += unsure(frame, max(p0 - fp0, fp1 - p1, q0 - fq0, fq1 - q1, pattern.width))

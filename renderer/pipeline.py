@@ -7,6 +7,7 @@ threads and any size of tile.
 from __future__ import annotations
 
 import functools
+import math
 import os
 import subprocess
 import sys
@@ -20,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import schema
-from renderer import CACHE, body, film, relief, shading
+from renderer import CACHE, body, bounce, film, relief, shading
 from renderer.area import area_sampling, in_blocks
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import csg
@@ -31,10 +32,12 @@ from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
-from renderer.tables import BARE, BASE, NOT_MINE, Floats, Pattern
+from renderer.tables import BARE, BASE, NOT_MINE, RAY, Floats, Pattern
 from renderer.trace import Truth
 
 TILE = 64  # pixels
+RAYS = 1 << 16  # from one object to others, at a time
+NO_RAYS = np.zeros(0, RAY)
 FEW_STRIPS = 128  # `auto` samples where more are near: then that is faster
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
@@ -144,10 +147,29 @@ class Frame:
             start = time.perf_counter()
             csg(
                 settings.samples, settings.bounces, tolerance, sparing, settings.seed, pattern, seen.footprints, which,
-                *rest,
+                *rest, NO_RAYS, np.zeros(1, np.int64),
             )  # fmt: skip
             timed("csg", start)
 
+        if settings.bounces > 0 and self.caster.shadows:  # what leaves this surface may meet another one
+            columns = math.ceil(math.sqrt(settings.samples))
+            each = columns * math.ceil(settings.samples / columns)
+            for first in range(0, len(chosen), max(RAYS // each, 1)):
+                start = time.perf_counter()
+                part = chosen[first : first + max(RAYS // each, 1)]
+                leaving, gone = np.zeros(len(part) * each, RAY), np.zeros(1, np.int64)
+                csg(
+                    settings.samples, settings.bounces, 0.0, False, settings.seed, pattern, seen.footprints, part,
+                    *rest, leaving, gone,
+                )  # fmt: skip
+                timed("csg", start)
+                start = time.perf_counter()
+                bounce.meet(
+                    leaving[: gone[0]], self.caster, scene.patterns, scene.slots, settings.seed, seen.footprints,
+                    scene.lighting, scene.materials, self.albedo, radiance,
+                )  # fmt: skip
+                timed("bounce", start)
+            return
         if settings.method == "csg" and pattern is not BARE:
             sample(chosen, 0.0, sparing=False)
             return
@@ -269,7 +291,7 @@ def _albedo() -> Floats:
 
 
 def _frame(compiled: CompiledScene, settings: Settings, model: Truth | Textures | None = None) -> Frame:
-    caster = Caster(compiled.objects, compiled.triangles)
+    caster = Caster(compiled.objects, compiled.triangles, bent=settings.bounces > 0)
     width, height = compiled.resolution
     lit = bool(compiled.lighting.sky.any())
     return Frame(

@@ -12,17 +12,19 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from renderer.geometry.shapes import NO_TRIANGLES, Triangles, block, cast, cast_triangles, frames_at
-from renderer.tables import FRAME, HIT, POINT, Floats
+from renderer.tables import FRAME, HIT, POINT, Floats, Ints
 
 Bools = NDArray[np.bool_]
 
-START = 1e-5  # shadow rays leave a mesh by this part of half the meshes' extent: single precision meets it again
+START = 1e-5  # rays leave a mesh by this part of half the meshes' extent: single precision meets it again
 
 
 class Caster:
     """The shapes of a scene, ready for rays."""
 
-    def __init__(self, objects: NDArray[np.void], triangles: Triangles = NO_TRIANGLES) -> None:
+    def __init__(self, objects: NDArray[np.void], triangles: Triangles = NO_TRIANGLES, bent: bool = False) -> None:
+        """bent: the frames of bare surfaces know how they are curved, too, as what they mirror asks for."""
+        self.bent = bent
         self.objects = objects
         self.triangles = triangles
         self._embree: EmbreeScene | None = None
@@ -36,24 +38,35 @@ class Caster:
             TriangleMesh(self._embree, np.ascontiguousarray(corners, np.float32))
 
     @property
+    def start(self) -> float:
+        """How far off a mesh rays must begin, world units."""
+        return START * self._size if self._embree is not None else 0.0
+
+    @property
     def shadows(self) -> bool:
         """Whether one part of the scene may stand in the light of another: not on a single convex shape."""
         return len(self.objects) > 1 or self._embree is not None
 
-    def hits(self, origin: Floats, directions: Floats) -> NDArray[np.void]:
-        """The nearest HIT (n,) of each ray from `origin` (3,) along `directions` (n, 3)."""
+    def hits(self, origin: Floats, directions: Floats, own: Ints | None = None) -> NDArray[np.void]:
+        """The nearest HIT (n,) of each ray from `origin` (3,) or (n, 3) along `directions` (n, 3).
+
+        own: (n,) the row of OBJECT that each ray leaves and, if it is no mesh, does not meet again.
+        """
         hits = np.zeros(len(directions), HIT)
-        cast(self.objects, origin, directions, hits)
+        origins = np.ascontiguousarray(np.broadcast_to(origin, directions.shape))
+        cast(self.objects, origins, directions, np.full(len(hits), -1, np.int32) if own is None else own, hits)
         if self._embree is not None and len(directions):
-            origins = np.broadcast_to((origin - self._middle).astype(np.float32), directions.shape)
-            found = self._embree.run(np.ascontiguousarray(origins), directions.astype(np.float32), output=1)
-            cast_triangles(self.triangles, origin, directions, found["primID"].astype(np.int32), hits)
+            found = self._embree.run(
+                (origins - self._middle).astype(np.float32), directions.astype(np.float32), output=1
+            )
+            cast_triangles(self.triangles, origins, directions, found["primID"].astype(np.int32), hits)
         return hits
 
     def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> NDArray[np.void]:
-        """The tangent FRAME (n,) at each of the hits (n,), none of them a miss."""
+        """The tangent FRAME (n,) at each of the hits (n,), none of them a miss; the origin is (3,) or (n, 3)."""
         frames = np.zeros(len(hits), FRAME)
-        frames_at(self.objects, self.triangles, origin, directions, hits, frames)
+        origins = np.ascontiguousarray(np.broadcast_to(origin, directions.shape))
+        frames_at(self.objects, self.triangles, origins, directions, hits, self.bent, frames)
         return frames
 
     def blocked(
@@ -81,7 +94,7 @@ class Caster:
             block(self.objects, points, np.ascontiguousarray(to_light), far, own, blocked)
             facing = seen & ~blocked & (np.sum(normals * to_light, axis=1) > 0.0)
             if self._embree is not None and facing.any():
-                start = points + normals * (START * self._size)
+                start = points + normals * self.start
                 blocked[facing] |= self._occluded(start[facing], to_light[facing], light["kind"] == POINT)
             mask |= np.where(blocked, np.uint64(1) << np.uint64(index), np.uint64(0))
         return mask

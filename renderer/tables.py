@@ -262,6 +262,19 @@ class Camera(NamedTuple):
     down: Floats  # (3,)
 
 
+RAY = np.dtype(
+    [
+        ("origin", "f8", (3,)), ("way", "f8", (3,)),  # world; `way` is a unit vector
+        ("through", "f8", (3,)),  # what radiance from there counts in the footprint, RGB
+        ("footprint", "i8"),  # index
+        ("number", "i8"),  # of the footprint's samples
+        ("bounces", "i4"),  # that are left, the one on what it meets counted
+        ("object", "i4"),  # row of OBJECT that it leaves
+    ]
+)  # fmt: skip
+"""A ray that has left an object's surface for the rest of the scene."""
+
+
 class Lighting(NamedTuple):
     """All that shines."""
 

@@ -54,20 +54,22 @@ def meet_far(
 
 @callee
 def follow(
-    bounces: int, through: Vector, way: Vector, start: Vector, number: int, seed: int, footprint: np.void,
-    pattern: Pattern, frame: np.void, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32],
-    albedo: Floats, found: Nearby, spans: Events,
+    bounces: int, through: Vector, way: Vector, start: Vector, number: int, seed: int, index: int, px: float, py: float,
+    blocked: np.uint64, pattern: Pattern, frame: np.void, lighting: Lighting, materials: NDArray[np.void],
+    slots: NDArray[np.int32], albedo: Floats, found: Nearby, spans: Events, leaving: NDArray[np.void],
+    gone: NDArray[np.int64],
 ) -> Vector:  # fmt: skip
     """What comes back along the ray that leaves `start` (off the surface, pattern space) by `way` (unit, world), times
     `through`, RGB: the light of what it meets, and of what the rays from there meet, up to so many `bounces`.
 
-    Each of a footprint's samples, of that number, draws its own rays. Where the last one meets the surface, that is lit
-    by all of the sky.
+    Each of a footprint's samples, of that number, draws its own rays; (px, py) is the footprint's place on the screen.
+    Where the last one meets the surface, that is lit by all of the sky. A ray that leaves the surface meets the sky, or
+    becomes the RAY `leaving[gone[0]]` of footprint `index`, where there is room for any.
     """
     lights = lighting.lights
     red = green = blue = 0.0
     x, y, w = start
-    for bounce in range(bounces):
+    for left in range(bounces, 0, -1):
         d = direction_to_pattern(frame, way)
         rise = leveled(d[0], d[1], d[2], LEVEL)
         gp, gq = d[0] / rise, d[1] / rise
@@ -76,7 +78,14 @@ def follow(
             top, bottom, sense = pattern.height + thin_of(pattern), w, UP
         m = meet_far(pattern, found, spans, x, y, w, gp, gq, top, bottom, sense)
         if m.w == -math.inf:
-            if rise > 0.0:
+            if rise > 0.0 and len(leaving) > 0:
+                ray = leaving[gone[0]]
+                gone[0] += 1
+                place = to_world(frame, x + (top - w) * gp, y + (top - w) * gq, top)
+                for c in range(3):
+                    ray.origin[c], ray.way[c], ray.through[c] = place[c], way[c], through[c]
+                ray.footprint, ray.number, ray.bounces, ray.object = index, number, left, frame.object
+            elif rise > 0.0:
                 sky = sky_from(lighting, way)
                 red, green, blue = red + through[0] * sky[0], green + through[1] * sky[1], blue + through[2] * sky[2]
             break
@@ -94,12 +103,12 @@ def follow(
         at = to_world(frame, x, y, w)
         n, e = normal_to_world(frame, across), (-way[0], -way[1], -way[2])
         x, y, w = x + off * across[0], y + off * across[1], w + off * across[2]
-        last = bounce == bounces - 1
+        last = left == 1
         colour = (material.emissive[0], material.emissive[1], material.emissive[2])
         if last:
             colour = ambient(material, lighting, albedo, n, e)
         for l in range(len(lights)):
-            if (footprint.blocked >> np.uint64(l)) & np.uint64(1):
+            if (blocked >> np.uint64(l)) & np.uint64(1):
                 continue
             light = light_to_pattern(frame, lights[l])
             lit = lit_by(lights[l], material, n, e, at)
@@ -111,7 +120,7 @@ def follow(
         red, green, blue = red + through[0] * colour[0], green + through[1] * colour[1], blue + through[2] * colour[2]
         if last:
             break
-        lobe, u, v = drawn(number, bounce + 1, seed, footprint.x, footprint.y)
+        lobe, u, v = drawn(number, left, seed, px, py)
         way, weight = scatter(material, n, e, lobe, u, v)
         through = (through[0] * weight[0], through[1] * weight[1], through[2] * weight[2])
         if max(through[0], through[1], through[2]) <= 0.0:

@@ -110,8 +110,11 @@ def touch(obj: np.void, face: int, x: float, y: float, z: float) -> tuple[float,
 
 
 @kernel
-def cast(objects: NDArray[np.void], origin: Floats, directions: Floats, hits: NDArray[np.void]) -> None:
-    """The nearest hit of each ray from `origin` (3,) along `directions` (n, 3), with all shapes but meshes."""
+def cast(objects: NDArray[np.void], origins: Floats, directions: Floats, own: Ints, hits: NDArray[np.void]) -> None:
+    """The nearest hit of each ray from `origins` (n, 3) along `directions` (n, 3), with all shapes but meshes.
+
+    own: (n,) the row of OBJECT that a ray leaves and does not meet again; -1: none.
+    """
     for i in range(len(directions)):
         hit = hits[i]
         hit.object = -1
@@ -119,10 +122,10 @@ def cast(objects: NDArray[np.void], origin: Floats, directions: Floats, hits: ND
         dx, dy, dz = directions[i, 0], directions[i, 1], directions[i, 2]
         for k in range(len(objects)):
             obj = objects[k]
-            if obj.shape == MESH:
+            if obj.shape == MESH or k == own[i]:
                 continue
             s = obj.translation
-            o = local(obj, origin[0] - s[0], origin[1] - s[1], origin[2] - s[2])
+            o = local(obj, origins[i, 0] - s[0], origins[i, 1] - s[1], origins[i, 2] - s[2])
             d = local(obj, dx, dy, dz)
             t, face = meet_shape(obj, o, d, hit.t)
             if t < hit.t:
@@ -136,7 +139,7 @@ def cast(objects: NDArray[np.void], origin: Floats, directions: Floats, hits: ND
 
 @kernel
 def cast_triangles(
-    triangles: Triangles, origin: Floats, directions: Floats, rows: Ints, hits: NDArray[np.void]
+    triangles: Triangles, origins: Floats, directions: Floats, rows: Ints, hits: NDArray[np.void]
 ) -> None:
     """Take what Embree found, triangle `rows[i]` (n,) or -1, in double precision where it is nearer than `hits`."""
     for i in range(len(rows)):
@@ -152,7 +155,7 @@ def cast_triangles(
         slope = n[0] * d[0] + n[1] * d[1] + n[2] * d[2]
         if area == 0.0 or slope == 0.0:
             continue
-        o = (origin[0] - a[0], origin[1] - a[1], origin[2] - a[2])
+        o = (origins[i, 0] - a[0], origins[i, 1] - a[1], origins[i, 2] - a[2])
         t = -(n[0] * o[0] + n[1] * o[1] + n[2] * o[2]) / slope
         if not 0.0 < t < hits[i].t:
             continue
@@ -273,15 +276,15 @@ def bend(obj: np.void, triangles: Triangles, hit: np.void, frame: np.void) -> No
 
 @kernel
 def frames_at(
-    objects: NDArray[np.void], triangles: Triangles, origin: Floats, directions: Floats, hits: NDArray[np.void],
-    frames: NDArray[np.void],
+    objects: NDArray[np.void], triangles: Triangles, origins: Floats, directions: Floats, hits: NDArray[np.void],
+    bent: bool, frames: NDArray[np.void],
 ) -> None:  # fmt: skip
-    """The tangent frame (n,) FRAME at each hit (n,) of the rays from `origin` along `directions` (n, 3).
+    """The tangent frame (n,) FRAME at each hit (n,) of the rays from `origins` (n, 3) along `directions` (n, 3).
 
-    Seen from behind, a surface is bare and turned to the viewer.
+    Seen from behind, a surface is bare and turned to the viewer. bent: what carries no pattern has a form as well.
     """
     for i in range(len(hits)):
-        hit, frame = hits[i], frames[i]
+        hit, frame, origin = hits[i], frames[i], origins[i]
         obj = objects[hit.object]
         d = directions[i]
         p = (origin[0] + hit.t * d[0], origin[1] + hit.t * d[1], origin[2] + hit.t * d[2])
@@ -340,12 +343,13 @@ def frames_at(
             )
         a = (a[0] / m[0], a[1] / m[0], a[2] / m[0])
         b = (b[0] / m[1], b[1] / m[1], b[2] / m[1])
-        if n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0:
+        turned = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0
+        if turned:
             n = (-n[0], -n[1], -n[2])
             frame.grooved = 0
         fill_frame(frame, p, a, b, n, origin)
         frame.form[:] = 0.0
-        if frame.grooved == 1:
+        if frame.grooved == 1 or (bent and not turned and not (hit.face == 1 and obj.shape == CYLINDER)):
             bend(obj, triangles, hit, frame)
 
 

@@ -1,0 +1,117 @@
+"""The rest of the scene: rays that have left a surface meet the other objects, and their grooves (000, 6.2).
+
+They are gathered and met all together: the bare shapes by the caster, as the camera's rays are, then the solid around
+each hit by the rays of `geometry.rays`, which shades it and goes on. What leaves there is met in the next round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from renderer.geometry.query import nearby
+from renderer.geometry.rays import LEVEL, follow
+from renderer.geometry.solid import leveled, thin_of
+from renderer.geometry.spans import events
+from renderer.kernel import borrow, keep, kernel
+from renderer.shading import direction_to_pattern, sky_from
+from renderer.tables import BARE, MESH, RAY, Floats, Ints, Lighting, Pattern
+
+
+@kernel
+def meet_sky(rays: NDArray[np.void], chosen: NDArray[np.int64], lighting: Lighting, radiance: Floats) -> None:
+    """Rays RAY that meet nothing: add the sky to their footprints' radiance (n, 5)."""
+    for k in chosen:
+        ray = rays[k]
+        sky = sky_from(lighting, (ray.way[0], ray.way[1], ray.way[2]))
+        for c in range(3):
+            radiance[ray.footprint, c] += ray.through[c] * sky[c]
+
+
+@kernel
+def meet_surface(
+    seed: int, pattern: Pattern, rays: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void],
+    blocked: NDArray[np.uint64], footprints: NDArray[np.void], lighting: Lighting, materials: NDArray[np.void],
+    slots: NDArray[np.int32], albedo: Floats, radiance: Floats, leaving: NDArray[np.void], gone: NDArray[np.int64],
+) -> None:  # fmt: skip
+    """Rays RAY that meet one object, each at the origin of its FRAME: add what they see to their footprints' radiance.
+
+    blocked: (n,) masks of the lights that do not reach the frame's origin. leaving, gone: as `csg`.
+    """
+    owned = nearby(pattern, max(pattern.near, 1)), events(pattern)
+    found, spans = borrow(owned[0]), borrow(owned[1])
+    pattern, lighting, materials, slots = borrow(pattern), borrow(lighting), borrow(materials), borrow(slots)
+    albedo, leaving = borrow(albedo), borrow(leaving)
+    top = pattern.height + thin_of(pattern)
+    for k in chosen:
+        ray, frame = rays[k], frames[k]
+        footprint = footprints[ray.footprint]
+        way = (ray.way[0], ray.way[1], ray.way[2])
+        d = direction_to_pattern(frame, way)
+        rise = leveled(d[0], d[1], d[2], LEVEL)
+        start = (frame.pq[0] + top * d[0] / rise, frame.pq[1] + top * d[1] / rise, top)
+        colour = follow(
+            ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, ray.number, seed, ray.footprint,
+            footprint.x, footprint.y, blocked[k], pattern, frame, lighting, materials, slots, albedo, found, spans,
+            leaving, gone,
+        )  # fmt: skip
+        for c in range(3):
+            radiance[ray.footprint, c] += colour[c]
+    keep(owned)
+
+
+class Shapes(Protocol):
+    """What rays meet: `raycast.Caster`."""
+
+    objects: NDArray[np.void]
+
+    @property
+    def start(self) -> float:
+        """How far off a mesh rays must begin, world units."""
+
+    def hits(self, origin: Floats, directions: Floats, own: Ints | None = None) -> NDArray[np.void]:
+        """The nearest HIT (n,) of each ray from `origin` (n, 3) along `directions` (n, 3)."""
+
+    def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> NDArray[np.void]:
+        """The tangent FRAME (n,) at each of the hits."""
+
+    def blocked(
+        self, origin: Floats, directions: Floats, hits: NDArray[np.void], lights: NDArray[np.void]
+    ) -> NDArray[np.uint64]:
+        """For each hit (n,) a mask of the lights that something stands before."""
+
+
+def meet(
+    rays: NDArray[np.void], shapes: Shapes, patterns: Sequence[Pattern], slots: Sequence[NDArray[np.int32]], seed: int,
+    footprints: NDArray[np.void], lighting: Lighting, materials: NDArray[np.void], albedo: Floats, radiance: Floats,
+) -> None:  # fmt: skip
+    """Add what RAYs see, and all that is seen from there, to their footprints' radiance (n, 5).
+
+    patterns, slots: by the column `pattern` and by the row of OBJECT.
+    """
+    while len(rays):
+        own = rays["object"].astype(np.int32)
+        leaves_mesh = shapes.objects["shape"][own] == MESH
+        rays["origin"] += np.where(leaves_mesh, shapes.start, 0.0)[:, None] * rays["way"]
+        origin, way = np.ascontiguousarray(rays["origin"]), np.ascontiguousarray(rays["way"])
+        hits = shapes.hits(origin, way, own)
+        seen = hits["object"] >= 0
+        meet_sky(rays, np.flatnonzero(~seen), lighting, radiance)
+        rays, hits, origin, way = rays[seen], hits[seen], origin[seen], way[seen]
+        frames = shapes.frames(origin, way, hits)
+        blocked = shapes.blocked(origin, way, hits, lighting.lights)
+        leaving, gone = np.zeros(len(rays), RAY), np.zeros(1, np.int64)
+        for row in np.unique(hits["object"]):
+            index = shapes.objects["pattern"][row]
+            grooved = (frames["grooved"] != 0) & (index >= 0)
+            for pattern, which in ((BARE, ~grooved), (patterns[index] if index >= 0 else BARE, grooved)):
+                chosen = np.flatnonzero((hits["object"] == row) & which)
+                if len(chosen):
+                    meet_surface(
+                        seed, pattern, rays, chosen, frames, blocked, footprints, lighting, materials, slots[row],
+                        albedo, radiance, leaving, gone,
+                    )  # fmt: skip
+        rays = leaving[: gone[0]]
