@@ -24,6 +24,7 @@ from renderer.tables import BARE, MESH, RAY, Floats, Ints, Lighting, Pattern
 @kernel
 def meet_sky(rays: NDArray[np.void], chosen: NDArray[np.int64], lighting: Lighting, radiance: Floats) -> None:
     """Rays RAY that meet nothing: add the sky to their footprints' radiance (n, 5)."""
+    lighting = borrow(lighting)
     for k in chosen:
         ray = rays[k]
         sky = sky_from(lighting, (ray.way[0], ray.way[1], ray.way[2]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import tempfile
 from pathlib import Path
 
@@ -10,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from renderer.kernel import kernel
-from renderer.tables import METHODS, Floats
+from renderer.kernel import borrow, kernel
+from renderer.shading import has_picture, sky_from, unit
+from renderer.tables import METHODS, Camera, Floats, Lighting
 
 Aov = NDArray[np.uint8] | NDArray[np.float32]
 SUFFIXES = (".png", ".exr", ".npy")
+FINEST = 16  # places in a pixel, each way, at which a picture of the sky is looked at, at most
 
 COLOURS = np.array(
     [
@@ -28,11 +31,11 @@ COLOURS = np.array(
 
 @kernel
 def develop(
-    footprints: NDArray[np.void], radiance: Floats, method: NDArray[np.uint8], sky: Floats, image: Floats,
-    methods: NDArray[np.uint8],
+    footprints: NDArray[np.void], radiance: Floats, method: NDArray[np.uint8], x: int, y: int, width: int,
+    camera: Camera, lighting: Lighting, image: Floats, methods: NDArray[np.uint8],
 ) -> None:  # fmt: skip
-    """Sum footprints (n,) with their radiance, error and cost (n, 5) into a tile's pixels (m, 5); what none covers
-    shows the sky.
+    """Sum footprints (n,) with their radiance, error and cost (n, 5) into the pixels (m, 5) of a tile, so wide and with
+    its upper left at (x, y); what none covers shows the sky, its mean over the whole pixel.
 
     A pixel's method is the last of METHODS that any part of it took. Parts come in a fixed order, so that sums round
     alike.
@@ -47,10 +50,26 @@ def develop(
         for c in range(4):
             image[pixel, c] += weight * radiance[i, c]
         image[pixel, 4] += radiance[i, 4]
+    lighting, corner, right, down = borrow(lighting), camera.corner, camera.right, camera.down
+    across = 1  # places in a pixel, each way, at which the sky is looked at: where it is a picture, no texel is missed
+    if has_picture(lighting):
+        size = math.sqrt(max(right[0] ** 2 + right[1] ** 2 + right[2] ** 2, down[0] ** 2 + down[1] ** 2 + down[2] ** 2))
+        finest = max(lighting.surroundings.tables[0, 1], lighting.surroundings.tables[0, 2] // 2)
+        across = min(max(int(math.ceil(size * finest / math.pi)), 2), FINEST)
     for pixel in range(len(image)):
-        open_part = max(1.0 - covered[pixel], 0.0)
-        for c in range(3):
-            image[pixel, c] += open_part * sky[c]
+        open_part = max(1.0 - covered[pixel], 0.0) / (across * across)
+        if open_part <= 0.0:
+            continue
+        for k in range(across * across):
+            u = x + pixel % width + (k % across + 0.5) / across
+            v = y + pixel // width + (k // across + 0.5) / across
+            sky = sky_from(lighting, unit((
+                corner[0] + u * right[0] + v * down[0],
+                corner[1] + u * right[1] + v * down[1],
+                corner[2] + u * right[2] + v * down[2],
+            )))  # fmt: skip
+            for c in range(3):
+                image[pixel, c] += open_part * sky[c]
 
 
 def encode(radiance: NDArray[np.float32], suffix: str, exposure: float = 1.0) -> bytes:

@@ -61,6 +61,7 @@ from renderer.shading import (
     answers,
     are_distant,
     dot,
+    has_picture,
     lit_by,
     mirrored,
     normal_to_world,
@@ -225,6 +226,10 @@ def line(
     answer = answers(materials, slots) if bounces > 0 else 0
     shows, samples = answer & MIRROR != 0, answer & (DIFFUSE | GLOSSY) != 0
     ridged = pattern.height > 0.0
+    if has_picture(lighting) and answer & (MIRROR | GLOSSY) != 0:  # of which rays get more than a few directions
+        for index in chosen:
+            method[index] = NOT_MINE
+        return
     most = 0  # points of a cross-section
     for profile in pattern.profiles:
         most = max(most, profile.count)

@@ -119,7 +119,9 @@ class Frame:
                 if len(chosen):
                     self._shade(row, pattern, seen, chosen, radiance, method, spent)
         start = clock()
-        film.develop(seen.footprints, radiance, method, scene.lighting.sky, image, methods)
+        film.develop(
+            seen.footprints, radiance, method, tile.x, tile.y, tile.width, scene.camera, scene.lighting, image, methods
+        )  # fmt: skip
         self._put(tile, image, methods)
         return spent | {"cast": cast - begin, "film": clock() - start}
 
@@ -228,8 +230,8 @@ def render(
 ) -> Picture:
     """Render a scene. What is not given is the scene's own; threads: one a processor.
 
-    progress: called with the part done, 0 to 1. cancelled: asked between tiles. meshes: a mesh file's bytes by name.
-    solids: what other renders have made of the patterns, by what it depends on; more may come to it.
+    progress: called with the part done, 0 to 1. cancelled: asked between tiles. meshes: a mesh's or envmap's bytes, by
+    name. solids: what other renders have made of the patterns, by what it depends on; more may come to it.
     Raises RenderError where the scene cannot be rendered, Cancelled where `cancelled` says so.
     """
     begin = time.perf_counter()
@@ -293,14 +295,14 @@ def _albedo() -> Floats:
 def _frame(compiled: CompiledScene, settings: Settings, model: Truth | Textures | None = None) -> Frame:
     caster = Caster(compiled.objects, compiled.triangles, bent=settings.bounces > 0)
     width, height = compiled.resolution
-    lit = bool(compiled.lighting.sky.any())
+    lit = bool(compiled.lighting.sky.any()) or shading.has_picture(compiled.lighting)
     return Frame(
         scene=compiled,
         settings=settings,
         caster=caster,
         flat=flat_frames(caster, compiled.camera.origin),
         model=model,
-        albedo=_albedo() if lit else np.zeros((2, 2, 2)),
+        albedo=_albedo() if lit else np.zeros((2, 2, 4)),
         radiance=np.zeros((height, width, 3), np.float32),
         method=np.zeros((height, width), np.uint8),
         error=np.zeros((height, width), np.float32),

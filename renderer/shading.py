@@ -1,4 +1,4 @@
-"""How a facet answers to light: glTF 2.0's materials (appendix B), direct light and a constant sky.
+"""How a facet answers to light: glTF 2.0's materials (appendix B), direct light and the sky.
 
 Parts of a footprint are shaded where they are found, so this is a leaf that the methods call and not a stage with
 buffers of its own. All vectors are unit vectors in world space; E points to the viewer, L to the light.
@@ -11,8 +11,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.kernel import kernel, leaf
-from renderer.tables import DIRECTIONAL, Lighting
+from renderer.kernel import callee, kernel, leaf
+from renderer.tables import DIRECTIONAL, GLOSS_LEVELS, IRRADIANCE, Lighting, Surroundings
 
 Vector = tuple[float, float, float]
 
@@ -186,10 +186,94 @@ def scatter(material: np.void, n: Vector, e: Vector, lobe: float, u: float, v: f
 
 
 @leaf
+def has_picture(lighting: Lighting) -> bool:
+    """Whether the sky differs from direction to direction."""
+    return len(lighting.surroundings.tables) > 0
+
+
+@callee
+def looked_up(surroundings: Surroundings, table: int, direction: Vector) -> Vector:
+    """What a table of the surroundings has in a world direction, bilinearly between the middles of its texels.
+
+    Beyond a pole the row goes on with itself, half around.
+    """
+    t = surroundings.tables
+    row, height, width = t[table, 0], t[table, 1], t[table, 2]
+    x = math.atan2(direction[0], direction[1]) / (2.0 * math.pi) + surroundings.turn
+    x = (x - math.floor(x)) * width - 0.5
+    y = math.acos(min(max(direction[2], -1.0), 1.0)) / math.pi * height - 0.5
+    i, j = math.floor(x), math.floor(y)
+    x, y = x - i, y - j
+    red = green = blue = 0.0
+    for k in range(4):
+        column, line = i + (k & 1), j + (k >> 1)
+        if line < 0 or line >= height:
+            column += width // 2
+            line = min(max(line, 0), height - 1)
+        weight = (x if k & 1 else 1.0 - x) * (y if k & 2 else 1.0 - y) * surroundings.scale
+        texel = surroundings.texels[row + line * width + column % width]
+        red, green, blue = red + weight * texel[0], green + weight * texel[1], blue + weight * texel[2]
+    return red, green, blue
+
+
+@leaf
 def sky_from(lighting: Lighting, direction: Vector) -> Vector:
     """Radiance of the sky in a world direction."""
     sky = lighting.sky
-    return sky[0], sky[1], sky[2]
+    red, green, blue = sky[0], sky[1], sky[2]
+    if has_picture(lighting):
+        more = looked_up(lighting.surroundings, 0, direction)
+        red, green, blue = red + more[0], green + more[1], blue + more[2]
+    return red, green, blue
+
+
+@leaf
+def between(albedo: NDArray[np.float64], cosine: float, roughness: float, column: int) -> float:
+    """A column of the table of `gloss_albedo`, bilinearly."""
+    last = albedo.shape[0] - 1
+    x, y = min(max(cosine, 0.0), 1.0) * last, roughness * last
+    i, j = min(int(x), last - 1), min(int(y), last - 1)
+    x -= i
+    y -= j
+    return (
+        (1.0 - x) * ((1.0 - y) * albedo[i, j, column] + y * albedo[i, j + 1, column])
+        + x * ((1.0 - y) * albedo[i + 1, j, column] + y * albedo[i + 1, j + 1, column])
+    )  # fmt: skip
+
+
+@callee
+def glossed(
+    surroundings: Surroundings, albedo: NDArray[np.float64], alpha: float, n: Vector, e: Vector
+) -> Vector:  # fmt: skip
+    """The mean radiance of the surroundings over the lobe that GGX sends to E; the picture's part of a split sum (B.
+    Karis, "Real shading in Unreal Engine 4", 2013).
+
+    Of the lobes that are seen head on, that serves which has the same mean of its directions: their middle and their
+    spread are then those of the lobe that E sees. Pictures linear in the direction are exact.
+    """
+    ne, roughness = min(max(dot(n, e), 0.0), 1.0), math.sqrt(alpha)
+    share = between(albedo, ne, roughness, 0)
+    side, up = between(albedo, ne, roughness, 2) / share, between(albedo, ne, roughness, 3) / share
+    t = (e[0] - ne * n[0], e[1] - ne * n[1], e[2] - ne * n[2])
+    middle = unit((side * t[0] + up * n[0], side * t[1] + up * n[1], side * t[2] + up * n[2]))
+    length = math.sqrt(side * side * dot(t, t) + up * up)
+    last = albedo.shape[0] - 1
+    j, before, after = 0, 1.0, 1.0
+    while j < last:
+        j += 1
+        before, after = after, albedo[last, j, 3] / albedo[last, j, 0]
+        if after < length:
+            break
+    part = min(max((before - length) / (before - after), 0.0), 1.0) if before > after else 1.0
+    y = (j - 1 + part) / last * GLOSS_LEVELS
+    k = min(int(y), GLOSS_LEVELS - 1)
+    y -= k
+    one, two = looked_up(surroundings, k, middle), looked_up(surroundings, k + 1, middle)
+    return (
+        (1.0 - y) * one[0] + y * two[0],
+        (1.0 - y) * one[1] + y * two[1],
+        (1.0 - y) * one[2] + y * two[2],
+    )  # fmt: skip
 
 
 DIFFUSE, GLOSSY, MIRROR = 1, 2, 4  # bits of `answers`
@@ -237,7 +321,7 @@ def are_distant(lights: NDArray[np.void]) -> bool:
 def white(lighting: Lighting, at: Vector) -> float:
     """Radiance of a white matt surface at a world point, turned to each light, under the sky: what errors are measured
     by. The mean of the channels."""
-    total = lighting.sky[0] + lighting.sky[1] + lighting.sky[2]
+    total = lighting.sky[0] + lighting.sky[1] + lighting.sky[2] + 3.0 * lighting.surroundings.white
     for light in lighting.lights:
         part = (light.color[0] + light.color[1] + light.color[2]) / math.pi
         if light.kind != DIRECTIONAL:
@@ -249,61 +333,59 @@ def white(lighting: Lighting, at: Vector) -> float:
 
 @leaf
 def ambient(material: np.void, lighting: Lighting, albedo: NDArray[np.float64], n: Vector, e: Vector) -> Vector:
-    """Radiance to E under the constant sky, unoccluded, and the material's own light.
+    """Radiance to E under the sky, unoccluded, and the material's own light.
 
     `albedo` is the table of `gloss_albedo`.
     """
     glow, base, sky = material.emissive, material.base_color, lighting.sky
-    if sky[0] == 0.0 and sky[1] == 0.0 and sky[2] == 0.0:
+    body = gloss = (sky[0], sky[1], sky[2])  # the sky's mean over the cosine, and over the lobe that shines
+    if has_picture(lighting):
+        more = looked_up(lighting.surroundings, IRRADIANCE, n)
+        body = (sky[0] + more[0], sky[1] + more[1], sky[2] + more[2])
+    elif sky[0] == 0.0 and sky[1] == 0.0 and sky[2] == 0.0:
         return glow[0], glow[1], glow[2]
     diffuse = (1.0 - material.metallic) * (1.0 - material.transmission)
     if material.metallic == 0.0 and material.f90 == 0.0:
         return (
-            glow[0] + diffuse * base[0] * sky[0],
-            glow[1] + diffuse * base[1] * sky[1],
-            glow[2] + diffuse * base[2] * sky[2],
+            glow[0] + diffuse * base[0] * body[0],
+            glow[1] + diffuse * base[1] * body[1],
+            glow[2] + diffuse * base[2] * body[2],
         )
     plain = grazing = coat = 0.0
     if material.alpha == 0.0:  # the bounces see what the mirror shows
         coat = material.f0 + (material.f90 - material.f0) * (1.0 - min(max(dot(n, e), 0.0), 1.0)) ** 5
     else:
-        last = albedo.shape[0] - 1
-        x = min(max(dot(n, e), 0.0), 1.0) * last
-        y = math.sqrt(material.alpha) * last
-        i, j = min(int(x), last - 1), min(int(y), last - 1)
-        x -= i
-        y -= j
-        for k in range(2):
-            value = (
-                (1.0 - x) * ((1.0 - y) * albedo[i, j, k] + y * albedo[i, j + 1, k])
-                + x * ((1.0 - y) * albedo[i + 1, j, k] + y * albedo[i + 1, j + 1, k])
-            )  # fmt: skip
-            if k == 0:
-                plain = value
-            else:
-                grazing = value
+        ne, roughness = dot(n, e), math.sqrt(material.alpha)
+        plain, grazing = between(albedo, ne, roughness, 0), between(albedo, ne, roughness, 1)
+        if has_picture(lighting):
+            more = glossed(lighting.surroundings, albedo, material.alpha, n, e)
+            gloss = (sky[0] + more[0], sky[1] + more[1], sky[2] + more[2])
     dielectric = material.f0 * plain + (material.f90 - material.f0) * grazing
     # what the coat sends back does not reach the body; the Fresnel term's mean over the sky stands for it
     diffuse *= 1.0 - dielectric - coat
     dielectric *= 1.0 - material.metallic
     m = material.metallic
     return (
-        glow[0] + sky[0] * (diffuse * base[0] + dielectric + m * (base[0] * plain + (1.0 - base[0]) * grazing)),
-        glow[1] + sky[1] * (diffuse * base[1] + dielectric + m * (base[1] * plain + (1.0 - base[1]) * grazing)),
-        glow[2] + sky[2] * (diffuse * base[2] + dielectric + m * (base[2] * plain + (1.0 - base[2]) * grazing)),
-    )
+        glow[0] + body[0] * diffuse * base[0]
+        + gloss[0] * (dielectric + m * (base[0] * plain + (1.0 - base[0]) * grazing)),
+        glow[1] + body[1] * diffuse * base[1]
+        + gloss[1] * (dielectric + m * (base[1] * plain + (1.0 - base[1]) * grazing)),
+        glow[2] + body[2] * diffuse * base[2]
+        + gloss[2] * (dielectric + m * (base[2] * plain + (1.0 - base[2]) * grazing)),
+    )  # fmt: skip
 
 
 @kernel
 def gloss_albedo(size: int, samples: int) -> NDArray[np.float64]:
-    """Share of a uniform sky that GGX sends to E, without Fresnel and weighted with Schlick's (1 - E.H)^5.
+    """Share of a uniform sky that GGX sends to E, without Fresnel and weighted with Schlick's (1 - E.H)^5; and the sum
+    of the directions it comes from, weighted without Fresnel: across the normal, in parts of E's, and along it.
 
-    Shape (size, size, 2); rows the cosine to E from 0 to 1, columns the roughness from 0 to 1. Midpoints of
+    Shape (size, size, 4); rows the cosine to E from 0 to 1, columns the roughness from 0 to 1. Midpoints of
     `samples` by `samples` half vectors drawn as GGX distributes them: the estimator then is 2 G2/G1-like and smooth.
     """
-    table = np.zeros((size, size, 2))
+    table = np.zeros((size, size, 4))
     for i in range(size):
-        ne = max(i / (size - 1.0), 1e-3)
+        ne = min(max(i / (size - 1.0), 1e-3), 1.0 - 1e-9)
         se = math.sqrt(1.0 - ne * ne)
         for j in range(size):
             alpha = max((j / (size - 1.0)) ** 2, 1e-4)
@@ -321,4 +403,6 @@ def gloss_albedo(size: int, samples: int) -> NDArray[np.float64]:
                     weight = 2.0 * nl * eh / (smith * nh) / (samples * samples)
                     table[i, j, 0] += weight
                     table[i, j, 1] += weight * (1.0 - eh) ** 5
+                    table[i, j, 2] += weight * (2.0 * eh * sh * math.cos(math.pi * (m + 0.5) / samples) / se - 1.0)
+                    table[i, j, 3] += weight * nl
     return table

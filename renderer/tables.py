@@ -275,11 +275,35 @@ RAY = np.dtype(
 """A ray that has left an object's surface for the rest of the scene."""
 
 
+GLOSS_LEVELS = 8
+IRRADIANCE = GLOSS_LEVELS + 1
+
+
+class Surroundings(NamedTuple):
+    """A picture of the sky, and what it comes to for surfaces that nothing stands before.
+
+    Tables are equirectangular, rows from the zenith down; columns begin in the world's y direction and turn towards x.
+    Table 0 is the picture itself. Table k up to GLOSS_LEVELS is its mean over the lobe of a metal of roughness
+    k / GLOSS_LEVELS that is seen head on, by the mirror's direction. Table IRRADIANCE is that over the cosine, by the
+    normal: the radiance of a white matt surface.
+    """
+
+    texels: NDArray[np.float32]  # (n, 3) of all tables, row by row
+    tables: Ints  # (IRRADIANCE + 1, 3) first row of `texels`, height, width; (0, 3) where there is no picture
+    scale: float  # on all of them
+    turn: float  # counterclockwise about the world's z axis, in whole turns
+    white: float  # radiance of a white matt surface turned to where that is most, mean of the channels
+
+
+NO_SURROUNDINGS = Surroundings(np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int32), 0.0, 0.0, 0.0)
+
+
 class Lighting(NamedTuple):
     """All that shines."""
 
     lights: NDArray[np.void]  # (n,) LIGHT, n <= 64
     sky: Floats  # (3,) radiance of the constant sky
+    surroundings: Surroundings = NO_SURROUNDINGS
 
 
 METHODS = ("none", "base", "segment", "line", "csg", "geometry", "relief", "area", "lines")

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from renderer.body import Base, Body, facing
 from renderer.geometry.random import drawn, jitter, seed_of, strewn
-from renderer.kernel import kernel, leaf
+from renderer.kernel import borrow, kernel, leaf
 from renderer.shading import Vector, ambient, dot, lit_by, scatter, sky_from, unit
 from renderer.tables import CYLINDER, GEOMETRY, MESH, NONE, POINT, RECTANGLE, Camera, Floats, Ints, Lighting
 
@@ -590,6 +590,7 @@ def gather(
 
     The last time surfaces are lit by all of the sky; before that rays go on to find what they see of it.
     """
+    lighting = borrow(lighting)
     lights = lighting.lights
     for k in range(len(directions)):
         if hits.body[k] < 0:

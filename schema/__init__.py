@@ -18,7 +18,7 @@ from .profiles import (
 )
 from .repeats import ConcentricRepeat, GridRepeat, LinearRepeat, Repeat, ScatterRepeat
 from .scales import ConstantScale, LinearScale, Scale, SineScale, TableScale
-from .scene import Camera, Mapping, Object, Render, Scene
+from .scene import Camera, Mapping, Object, Render, Scene, files
 from .shapes import Cylinder, Mesh, Rectangle, Shape, Sphere
 from .text import MAX_BYTES
 from .validate import Report, check, check_text
@@ -70,6 +70,7 @@ __all__ = [
     "VProfile",
     "check",
     "check_text",
+    "files",
     "internal",
     "json_schema",
     "overhangs",

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 
 from . import svg
 from .errors import Problem, pointer
-from .lights import EnvmapLight
 from .materials import Material
 from .parts import Parts, Place
 from .paths import CirclePath, Path, PolylinePath, SpiralPath, SvgPath
@@ -74,9 +73,6 @@ def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> f
 
 def left_out(scene: Scene) -> Iterator[Problem]:
     """What the renderer does not do yet."""
-    for index, light in enumerate(scene.lights):
-        if isinstance(light, EnvmapLight):
-            yield _warning(("lights", index), "a light that is rendered", "an envmap: not rendered yet, left out")
     yield from _not_followed(scene) if scene.render.bounces > 0 else _bounces_wanted(scene)
 
 

@@ -36,12 +36,25 @@ class ConstantLight(Model):
 
 
 class EnvmapLight(Model):
-    """A sky from an equirectangular picture."""
+    """A sky from an equirectangular picture, one in a scene at most.
+
+    Rows go from the zenith (+z) down to -z, columns to the right for one who looks around from inside: the left edge is
+    in the direction +y, the first quarter +x, the middle -y, the third quarter -x. So it is Mitsuba's envmap, turned as
+    all that is y up there and z up here: (x, y, z) there is (x, -z, y) here. Values between the middles of texels are
+    bilinear.
+    """
 
     type: Literal["envmap"] = Field(description="The kind of light.")
-    file: FileName = Field(description="An EXR, HDR or PNG file, relative to the scene file.")
+    file: FileName = Field(
+        description="An EXR, HDR or PNG file, relative to the scene file: linear radiance, W/(m^2 sr), but PNG, which "
+        "is sRGB. Its first row is the zenith, its middle lies in the direction -y, its left edge +y, its first "
+        "quarter +x. Small suns become directional lights."
+    )
     scale: Radiometric = Field(default=1.0, description="Factor on the picture's radiance, a pure number. Default: 1.")
-    rotate: Degrees = Field(default=0.0, description="Turn about the world's z axis, degrees. Default: 0.")
+    rotate: Degrees = Field(
+        default=0.0,
+        description="Turn about the world's z axis, degrees, counterclockwise as seen from above. Default: 0.",
+    )
 
 
 Light = Annotated[DirectionalLight | PointLight | ConstantLight | EnvmapLight, Field(discriminator="type")]

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from .base import MAX_ENTRIES, MIN_LENGTH, Array, Degrees3, Fault, Model, Name, Point2, Point3, Seed
+from .errors import pointer
 from .lights import Light
 from .materials import Material
 from .patterns import Pattern
@@ -143,3 +144,18 @@ class Scene(Model):
         min_length=1, max_length=MAX_ENTRIES, description="The objects, at least one."
     )
     render: Render = Field(default=Render(), description="How to render.")
+
+    def faults(self) -> Iterator[Fault]:
+        pictures = [index for index, light in enumerate(self.lights) if light.type == "envmap"]
+        if len(pictures) > 1:
+            yield Fault(("lights", pictures[1]), "one envmap at most", "a second one")
+
+
+def files(scene: Scene) -> Iterator[tuple[str, str]]:
+    """The files that a scene names, meshes and envmaps: where it does, as a JSON pointer, and their names."""
+    for index, item in enumerate(scene.objects):
+        if item.shape.type == "mesh":
+            yield pointer("objects", index, "shape", "file"), item.shape.file
+    for index, light in enumerate(scene.lights):
+        if light.type == "envmap":
+            yield pointer("lights", index, "file"), light.file

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 WRONG, UNREADABLE, STOPPED = 1, 2, 130  # exit codes; 0: all is well
 SCENE_LIMIT = 64 << 20  # bytes of a scene file
-MESH_LIMIT = 1 << 30  # bytes of a mesh file
+FILE_LIMIT = 1 << 30  # bytes of a mesh or an envmap
 AOVS = ("method", "error", "cost")
 SOLIDS, MAP_FILES = (".glb", ".stl", ".ply", ".obj"), (".png", ".exr")
 MAPS = ("height", "normal", "anisotropy")
@@ -71,7 +71,7 @@ def render(
             _fail(UNREADABLE, problem)
     report, folder = _read(scene)
     checked = _valid(report)
-    _meshes_exist(checked, folder)
+    _files_exist(checked, folder)
 
     def work(stopped: Callable[[], bool]) -> tuple[Picture, list[tuple[Path, bytes]]]:
         from renderer import film, pipeline
@@ -128,7 +128,7 @@ def chart(
         _fail(UNREADABLE, problem)
     report, folder = _read(scene)
     checked = _valid(report)
-    _meshes_exist(checked, folder)
+    _files_exist(checked, folder)
     title = "standard input" if scene == "-" else Path(scene).name
 
     def planned() -> Plan:
@@ -196,7 +196,7 @@ def export(
         _fail(UNREADABLE, "--thickness: expected a solid, as a map has none")
     report, folder = _read(scene)
     checked = _valid(report)
-    _meshes_exist(checked, folder)
+    _files_exist(checked, folder)
     from service import exports
 
     try:
@@ -319,26 +319,22 @@ def _known_method(method: str | None, option: str = "--method") -> None:
             _fail(UNREADABLE, f"{option}: {fault}")
 
 
-def _meshes_exist(scene: Scene, folder: Path) -> None:
-    """Exit code 1 where a mesh file is not there."""
+def _files_exist(scene: Scene, folder: Path) -> None:
+    """Exit code 1 where a mesh or an envmap is not there."""
     import schema
 
     problems = []
-    for index, thing in enumerate(scene.objects):
-        if thing.shape.type == "mesh":
-            path = folder / thing.shape.file
-            try:
-                with open(path, "rb"):
-                    size = path.stat().st_size
-            except (OSError, ValueError) as error:
-                found = f"{path}: {getattr(error, 'strerror', None) or error}"
-                problems.append(schema.Problem(f"/objects/{index}/shape/file", "a file that can be read", found))
-            else:
-                if size > MESH_LIMIT:
-                    found = f"{path}: {size} bytes"
-                    problems.append(
-                        schema.Problem(f"/objects/{index}/shape/file", f"at most {MESH_LIMIT} bytes", found)
-                    )
+    for place, name in schema.files(scene):
+        path = folder / name
+        try:
+            with open(path, "rb"):
+                size = path.stat().st_size
+        except (OSError, ValueError) as error:
+            found = f"{path}: {getattr(error, 'strerror', None) or error}"
+            problems.append(schema.Problem(place, "a file that can be read", found))
+        else:
+            if size > FILE_LIMIT:
+                problems.append(schema.Problem(place, f"at most {FILE_LIMIT} bytes", f"{path}: {size} bytes"))
     if problems:
         _fail(WRONG, *(problem.line() for problem in problems))
 

@@ -54,5 +54,11 @@ class UploadedMesh(BaseModel):
     bytes: int
 
 
+class UploadedEnvmap(BaseModel):
+    id: str = Field(description="hash of the file's content")
+    file: str = Field(description="what an envmap's `file` says to use it")
+    bytes: int
+
+
 class Examples(BaseModel):
     examples: list[str] = Field(description="names, sorted")

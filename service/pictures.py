@@ -18,7 +18,7 @@ from service import overrides
 from service.documents import CompiledPattern, Finding
 from service.problems import ProblemError, findings, scene_error
 from service.settings import Settings
-from service.store import PREFIX, SUFFIXES, MeshStore
+from service.store import PREFIX, SKY_SUFFIXES, SUFFIXES, MeshStore
 
 TYPES = {".png": "image/png", ".exr": "image/x-exr", ".npy": "application/x-npy"}
 _NAME = "pattern"  # what a pattern that comes alone is called in the scene made around it
@@ -66,7 +66,7 @@ def checked_for_service(text: bytes, wish: Wish, settings: Settings, meshes: Mes
 
 
 def reader(meshes: MeshStore) -> Callable[[str], bytes]:
-    """What gives the bytes of an uploaded mesh by the name that a scene has for it."""
+    """What gives the bytes of an uploaded file by the name that a scene has for it."""
 
     def mesh(name: str) -> bytes:
         data = meshes.get(name.removeprefix(PREFIX))
@@ -172,19 +172,13 @@ def _materials(pattern: Any) -> set[str]:
 def _foreign_files(scene: schema.Scene, meshes: MeshStore) -> list[schema.Problem]:
     """Files in the scene that are no uploads."""
     problems = []
-    for index, thing in enumerate(scene.objects):
-        if thing.shape.type != "mesh":
-            continue
-        pointer = f"/objects/{index}/shape/file"
-        name = thing.shape.file
-        if not name.startswith(PREFIX) or not name.endswith(SUFFIXES):
-            expected = f"{PREFIX}ID.SUFFIX, as POST /api/meshes gives it; the service reads no files"
+    for pointer, name in schema.files(scene):
+        kind, route, suffixes = "a mesh", "meshes", SUFFIXES
+        if pointer.startswith("/lights"):
+            kind, route, suffixes = "an envmap", "envmaps", SKY_SUFFIXES
+        if not name.startswith(PREFIX) or not name.endswith(suffixes):
+            expected = f"{PREFIX}ID.SUFFIX, as POST /api/{route} gives it; the service reads no files"
             problems.append(schema.Problem(pointer, expected, repr(name)))
         elif meshes.get(name.removeprefix(PREFIX)) is None:
-            problems.append(schema.Problem(pointer, "an uploaded mesh (POST /api/meshes)", f"no upload {name!r}"))
-    for index, light in enumerate(scene.lights):
-        if light.type == "envmap":
-            problems.append(
-                schema.Problem(f"/lights/{index}", "no file: the service reads no files", "an environment map")
-            )
+            problems.append(schema.Problem(pointer, f"{kind} uploaded (POST /api/{route})", f"no upload {name!r}"))
     return problems

@@ -18,12 +18,12 @@ import schema
 from renderer import compile as compiler
 from service import bodies, charts, exports, overrides, pictures
 from service.charts import ChartWish
-from service.documents import CompiledPattern, Examples, Health, UploadedMesh, Validation
+from service.documents import CompiledPattern, Examples, Health, UploadedEnvmap, UploadedMesh, Validation
 from service.pictures import TYPES, Wish
 from service.problems import MEDIA_TYPE, ProblemError, findings
 from service.renders import ClientGone, Renders
 from service.settings import Settings
-from service.store import PREFIX, SUFFIXES, MeshStore
+from service.store import PREFIX, SKY_SUFFIXES, SUFFIXES, MeshStore
 
 VERSION = "0.1.0"
 SCENE_BODY = {"requestBody": {"required": True, "content": {"application/json": {"schema": {"$ref": "#/scene"}}}}}
@@ -293,15 +293,32 @@ async def upload_mesh(
     ] = None,
 ) -> UploadedMesh:
     """Takes in a mesh (OBJ, PLY, GLB), as the body itself or as the file of a form. Kept until the store is full."""
+    stored, size = await _stored(request, name, SUFFIXES, "mesh")
+    return UploadedMesh(id=Path(stored).stem, file=PREFIX + stored, bytes=size)
+
+
+@router.post("/envmaps", status_code=201, openapi_extra=MESH_BODY, responses=problems(400, 413, 415, 422))
+async def upload_envmap(
+    request: Request,
+    name: Annotated[
+        str | None, Query(description="the file's name, for its suffix; a form's file has one", max_length=255)
+    ] = None,
+) -> UploadedEnvmap:
+    """Takes in a picture of the sky (EXR, HDR, PNG), as `/meshes` does a mesh, and keeps it beside those."""
+    stored, size = await _stored(request, name, SKY_SUFFIXES, "picture")
+    return UploadedEnvmap(id=Path(stored).stem, file=PREFIX + stored, bytes=size)
+
+
+async def _stored(request: Request, name: str | None, suffixes: tuple[str, ...], what: str) -> tuple[str, int]:
+    """Keeps the file of a request: its name in the store, and its size."""
     here = shop(request)
     data, own_name = await bodies.read_upload(request, here.settings.mesh_limit)
     suffix = Path(name or own_name).suffix.lower()
-    if suffix not in SUFFIXES:
-        raise ProblemError(415, f"Expected a file name (?name=) that ends in {', '.join(SUFFIXES)}.")
+    if suffix not in suffixes:
+        raise ProblemError(415, f"Expected a file name (?name=) that ends in {', '.join(suffixes)}.")
     if not data:
-        raise ProblemError(422, "The mesh is empty.")
-    stored = await anyio.to_thread.run_sync(here.meshes.put, data, suffix)
-    return UploadedMesh(id=Path(stored).stem, file=PREFIX + stored, bytes=len(data))
+        raise ProblemError(422, f"The {what} is empty.")
+    return await anyio.to_thread.run_sync(here.meshes.put, data, suffix), len(data)
 
 
 def negotiate(accept: str | None, kinds: tuple[str, ...] = tuple(TYPES.values())) -> str:
@@ -357,10 +374,10 @@ def _examples(folder: Path) -> list[str]:
 
 
 def _example(folder: Path, name: str, meshes: MeshStore) -> bytes:
-    """The scene, its mesh files uploaded: the service reads none from a path that a scene names."""
+    """The scene, its files uploaded: the service reads none from a path that a scene names."""
     scene = json.loads((folder / f"{name}.json").read_bytes())
-    for item in scene.get("objects", []):
-        file = item["shape"].get("file")
+    for thing in [*(item["shape"] for item in scene.get("objects", [])), *scene.get("lights", [])]:
+        file = thing.get("file")
         if file is not None:
-            item["shape"]["file"] = PREFIX + meshes.put((folder / file).read_bytes(), Path(file).suffix)
+            thing["file"] = PREFIX + meshes.put((folder / file).read_bytes(), Path(file).suffix)
     return json.dumps(scene, indent=2).encode()

@@ -21,8 +21,8 @@ class Settings:
     page: Path = ROOT / "web" / "dist"  # the built page
     examples: Path = ROOT / "examples"
     body_limit: int = 8 * MIB  # of a scene or a pattern
-    mesh_limit: int = 64 * MIB  # of one uploaded mesh
-    mesh_store: int = 512 * MIB  # of all uploaded meshes; the oldest go first
+    mesh_limit: int = 64 * MIB  # of one uploaded mesh or envmap
+    mesh_store: int = 512 * MIB  # of all uploads; the oldest go first
     renders: int = 2  # renders at the same time
     queue: int = 8  # renders that wait; one more is refused with 503
     threads: int = max(1, (os.cpu_count() or 2) // 2)  # of one render

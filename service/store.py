@@ -1,4 +1,4 @@
-"""Uploaded meshes, kept in memory under the hash of their content."""
+"""Uploaded meshes and envmaps, kept in memory under the hash of their content."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import threading
 from collections import OrderedDict
 
 SUFFIXES = (".obj", ".ply", ".glb")
+SKY_SUFFIXES = (".exr", ".hdr", ".png")
 PREFIX = "upload:"
 
 

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 import schema
-from renderer import meshfile
+from renderer import meshfile, skyfile
 from renderer.compile.patterns import MOST_NEAR, PatternCache
 from renderer.errors import Fault, RenderError
 from renderer.geometry.shapes import NO_TRIANGLES, Triangles
 from renderer.meshfile import TriangleSoup
 from renderer.surface import Surface
+from renderer.surroundings import surroundings
 from renderer.tables import (
     CYLINDER,
     DIRECTIONAL,
@@ -23,13 +24,16 @@ from renderer.tables import (
     MATERIAL,
     MAX_LIGHTS,
     MESH,
+    NO_SURROUNDINGS,
     OBJECT,
     POINT,
     RECTANGLE,
     SPHERE,
     Camera,
+    Floats,
     Lighting,
     Pattern,
+    Surroundings,
 )
 
 
@@ -49,9 +53,9 @@ class CompiledScene(NamedTuple):
 def compile_scene(
     scene: schema.Scene, resolution: tuple[int, int], patterns: PatternCache, meshes: Callable[[str], bytes] | None
 ) -> CompiledScene:
-    """The tables of a scene. `meshes` gives a mesh file's bytes by its name.
+    """The tables of a scene. `meshes` gives the bytes of a file by its name, of a mesh or an envmap.
 
-    Raises RenderError where a mesh file cannot be had, or used.
+    Raises RenderError where a file cannot be had, or used.
     """
     names = {name: row for row, name in enumerate(scene.materials)}
     objects = np.zeros(len(scene.objects), OBJECT)
@@ -100,7 +104,7 @@ def compile_scene(
         objects=objects,
         triangles=_triangles(objects, soups),
         materials=np.concatenate([_material(material) for material in scene.materials.values()]),
-        lighting=_lighting(scene.lights),
+        lighting=_lighting(scene.lights, meshes),
         patterns=tuple(tables),
         slots=tuple(slots),
     )
@@ -177,11 +181,10 @@ def _material(material: schema.Material) -> NDArray[np.void]:
     return row
 
 
-def _lighting(lights: Sequence[schema.Light]) -> Lighting:
-    """The lights that are rendered; a picture of the surroundings is not yet."""
+def _lighting(lights: Sequence[schema.Light], files: Callable[[str], bytes] | None) -> Lighting:
     rows = []
-    sky = np.zeros(3)
-    for light in lights:
+    sky, around = np.zeros(3), NO_SURROUNDINGS
+    for index, light in enumerate(lights):
         row = np.zeros(1, LIGHT)
         if isinstance(light, schema.DirectionalLight):
             away = -np.array(light.direction, float)
@@ -192,6 +195,25 @@ def _lighting(lights: Sequence[schema.Light]) -> Lighting:
             rows.append(row)
         elif isinstance(light, schema.ConstantLight):
             sky += light.radiance
+        else:
+            around, suns = _surroundings(f"/lights/{index}/file", light, files)
+            for sun in suns:
+                row["kind"], row["vector"], row["color"] = DIRECTIONAL, sun[:3], sun[3:]
+                rows.append(row.copy())
     if len(rows) > MAX_LIGHTS:
         raise RenderError(Fault("/lights", f"at most {MAX_LIGHTS} directional and point lights", str(len(rows))))
-    return Lighting(np.concatenate(rows) if rows else np.zeros(0, LIGHT), sky)
+    return Lighting(np.concatenate(rows) if rows else np.zeros(0, LIGHT), sky, around)
+
+
+def _surroundings(
+    pointer: str, light: schema.EnvmapLight, files: Callable[[str], bytes] | None
+) -> tuple[Surroundings, Floats]:
+    if files is None:
+        raise RenderError(Fault(pointer, "no envmap, as no file can be read here", repr(light.file)))
+    try:
+        return surroundings(light.file, files(light.file), light.scale, light.rotate)
+    except OSError as error:
+        found = f"{light.file!r}: {error.strerror or error}"
+        raise RenderError(Fault(pointer, "a file that can be read", found)) from None
+    except skyfile.SkyFileError as error:
+        raise RenderError(Fault(pointer, error.expected, error.found)) from None

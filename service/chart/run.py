@@ -73,7 +73,7 @@ class Plan:
         return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
     def _meshes(self) -> list[str]:
-        names = sorted({thing.shape.file for thing in self.scene.objects if thing.shape.type == "mesh"})
+        names = sorted({name for _, name in schema.files(self.scene)})
         return [hashlib.sha256(self.meshes(name)).hexdigest() for name in names] if self.meshes else names
 
 

@@ -103,12 +103,16 @@ def _carried(made: body.Body) -> Floats:
     return np.asarray(carried / np.maximum(length, 1e-300))
 
 
-def foreign_scene(mi: Any, scene: schema.Scene, sampler: str = "independent") -> Any:
+def foreign_scene(
+    mi: Any, scene: schema.Scene, sampler: str = "independent", depth: int = 2, around: Floats | None = None
+) -> Any:
+    """depth: so many rays a path, direct light with 2. around: the picture (h, w, 3) of an envmap, which is seen, and
+    which the scene itself leaves out. Mitsuba has its first and its last row at the poles."""
     camera = scene.camera
     width, height = camera.resolution
     content: dict[str, Any] = {
         "type": "scene",
-        "integrator": {"type": "path", "max_depth": 2, "hide_emitters": True},  # direct light
+        "integrator": {"type": "path", "max_depth": depth, "rr_depth": 1000, "hide_emitters": around is None},
         "sensor": {
             "type": "perspective", "fov": camera.fov, "fov_axis": "y", "near_clip": 1e-3, "far_clip": 1e3,
             "to_world": mi.ScalarTransform4f().look_at(
@@ -130,6 +134,11 @@ def foreign_scene(mi: Any, scene: schema.Scene, sampler: str = "independent") ->
                 "type": "point", "position": list(light.position),
                 "intensity": {"type": "rgb", "value": list(light.intensity)},
             }  # fmt: skip
+    if around is not None:
+        content["around"] = {
+            "type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(around, np.float32)),
+            "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], 90),
+        }  # fmt: skip
     for index, part in enumerate(parts(scene)):
         count = len(part.corners) * 3
         made = mi.Mesh(

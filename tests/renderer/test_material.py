@@ -95,7 +95,7 @@ def test_no_material_gives_more_light_than_it_gets(cosine: float) -> None:
 @pytest.mark.parametrize("samples", [48, 192])
 def test_gloss_albedo(samples: int) -> None:
     """The table against the sum over the whole hemisphere of lights of a metal with base colour 1 (Fresnel 1: the first
-    number) and 0 (Schlick's (1 - E.H)^5 alone: the second).
+    number) and 0 (Schlick's (1 - E.H)^5 alone: the second); and the sums of the first one's directions.
 
     Where E grazes, half the lobe lies below the plane: the midpoints know the place of that edge to one of `samples`.
     """
@@ -105,8 +105,12 @@ def test_gloss_albedo(samples: int) -> None:
         for j in (7, 11, 15):  # roughness 0.47 and more: sharper lobes fall between the directions
             e = eyes(i / 15, len(directions))
             row = material(metallic=1.0, alpha=(j / 15) ** 2, base_color=(1.0, 0.0, 0.0))
-            total = answers(row, e, directions).sum(axis=0) * angle
-            assert table[i, j] == pytest.approx(total[:2], abs=1.0 / samples)
+            each = answers(row, e, directions) * angle
+            assert table[i, j, :2] == pytest.approx(each.sum(axis=0)[:2], abs=1.0 / samples)
+            across, along = each[:, 0] @ directions[:, 0], each[:, 0] @ directions[:, 2]
+            side = np.sqrt(1.0 - (i / 15) ** 2)
+            assert table[i, j, 2] * side == pytest.approx(across, abs=1.0 / samples)
+            assert table[i, j, 3] == pytest.approx(along, abs=1.0 / samples)
 
 
 def test_the_sky_is_the_sum_of_all_lights(plate: Plate, picture: Callable[..., pipeline.Picture]) -> None:

@@ -17,6 +17,7 @@ from renderer.errors import Fault, RenderError
 from .conftest import SETTINGS, FakeRenderer, assert_problem, open_client
 
 TRIANGLE = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n"
+SKY = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + bytes([128, 128, 128, 128] * 2)
 
 
 def test_validate(client: TestClient, scene: dict[str, Any]) -> None:
@@ -153,9 +154,37 @@ def test_scene_may_not_name_files(client: TestClient, scene: dict[str, Any], fak
     assert not fake.calls
 
 
-def test_environment_map_is_refused(client: TestClient, scene: dict[str, Any]) -> None:
-    scene["lights"].append({"type": "envmap", "file": "/etc/passwd"})
-    assert_problem(client.post("/api/render", json=scene), 422, "/lights/1")
+@pytest.mark.parametrize("file", ["/etc/passwd", "sky.exr", "upload:" + "0" * 32 + ".exr", "upload:a.obj"])
+def test_envmap_of_the_machine_is_refused(
+    client: TestClient, scene: dict[str, Any], fake: FakeRenderer, file: str
+) -> None:
+    scene["lights"].append({"type": "envmap", "file": file})
+    assert_problem(client.post("/api/render", json=scene), 422, "/lights/1/file")
+    assert not fake.calls
+
+
+def test_envmap(client: TestClient, scene: dict[str, Any], fake: FakeRenderer) -> None:
+    raw = client.post("/api/envmaps?name=sky.HDR", content=SKY)
+    assert raw.status_code == 201
+    assert raw.json() == client.post("/api/envmaps", files={"file": ("sky.hdr", SKY)}).json()
+    assert raw.json()["bytes"] == len(SKY)
+    scene["lights"].append({"type": "envmap", "file": raw.json()["file"]})
+    assert client.post("/api/render", json=scene).status_code == 200
+    assert fake.calls[0]["meshes"](raw.json()["file"]) == SKY
+
+
+def test_envmap_is_rendered(client: TestClient, scene: dict[str, Any]) -> None:
+    for data, status in ((SKY, 200), (SKY[:-1], 422)):
+        file = client.post("/api/envmaps?name=sky.hdr", content=data).json()["file"]
+        scene["lights"] = [{"type": "envmap", "file": file}]
+        answer = client.post("/api/render", json=scene)
+        assert answer.status_code == status
+    assert_problem(answer, 422, "/lights/0/file")
+
+
+def test_wrong_envmaps(client: TestClient) -> None:
+    assert_problem(client.post("/api/envmaps?name=a.obj", content=SKY), 415)
+    assert_problem(client.post("/api/envmaps?name=a.exr", content=b""), 422)
 
 
 def test_mesh(client: TestClient, scene: dict[str, Any], fake: FakeRenderer) -> None:
