@@ -379,7 +379,7 @@ BAD = [
     ("a.jpg", b"", "expected an EXR, HDR or PNG file, found 'a.jpg'"),
     ("a.exr", b"nonsense", "expected a readable EXR file"),
     ("a.png", b"nonsense", "expected a readable PNG file"),
-    ("a.png", png(np.zeros((2, 2, 3), np.uint8))[:50], "expected a readable PNG file"),
+    ("a.png", png(np.zeros((2, 2, 3), np.uint8))[:40], "expected a readable PNG file"),
     ("a.hdr", b"nonsense", "expected a Radiance picture, which begins with #?, found b'nonsense'"),
     ("a.hdr", b"#?RADIANCE\n\n+Y 1 -X 1\n", "expected a header that ends with -Y HEIGHT +X WIDTH, found none"),
     ("a.hdr", hdr(ONE, False, b"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n"), "expected FORMAT=32-bit_rle_rgbe"),
