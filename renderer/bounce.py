@@ -95,9 +95,9 @@ def meet(
     """
     while len(rays):
         own = rays["object"].astype(np.int32)
-        leaves_mesh = shapes.objects["shape"][own] == MESH
-        rays["origin"] += np.where(leaves_mesh, shapes.start, 0.0)[:, None] * rays["way"]
-        origin, way = np.ascontiguousarray(rays["origin"]), np.ascontiguousarray(rays["way"])
+        ahead = np.where(shapes.objects["shape"][own] == MESH, rays["clear"] + shapes.start, 0.0)  # it may meet itself
+        way = np.ascontiguousarray(rays["way"])
+        origin = rays["origin"] + ahead[:, None] * way
         hits = shapes.hits(origin, way, own)
         seen = hits["object"] >= 0
         meet_sky(rays, np.flatnonzero(~seen), lighting, radiance)

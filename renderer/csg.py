@@ -23,6 +23,7 @@ from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.shading import (
     ambient,
+    dot,
     light_to_pattern,
     lit_by,
     normal_to_world,
@@ -44,19 +45,19 @@ SURE = 0.5  # how much of the tolerance the standard error may take
 
 @kernel
 def csg(
-    samples: int, bounces: int, tolerance: float, sparing: bool, seed: int, pattern: Pattern,
-    footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera,
-    lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: NDArray[np.float64],
-    radiance: NDArray[np.float64], method: NDArray[np.uint8], leaving: NDArray[np.void], gone: NDArray[np.int64],
+    samples: int, bounces: int, indirect: bool, tolerance: float, sparing: bool, seed: int, leaving: NDArray[np.void],
+    gone: NDArray[np.int64], pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64],
+    frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32],
+    albedo: NDArray[np.float64], radiance: NDArray[np.float64], method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
     samples: at least so many a footprint, in a grid of strata, where the tolerance is 0; else as many as that asks for,
     which is the error relative to a white surface in the same light. sparing: NOT_MINE, where that is more than
-    MOST * MOST. bounces: how often light is followed from facet to
-    facet, by no more than `samples` rays a footprint. slots: rows of `materials` for the
-    pattern's facets, the object's own first. leaving: room for each sample's RAY (`rays.follow`), if others are to meet
-    them; `gone` (1,) is how many there are.
+    MOST * MOST. bounces: how often light is followed from facet to facet, by no more than `samples` rays a footprint;
+    indirect: that light alone, added to what is there. leaving: room for each sample's RAY (`rays.follow`), if others
+    are to meet them; `gone` (1,) is how many there are. slots: rows of `materials` for the pattern's facets, the
+    object's own first.
     """
     capacity = max(pattern.near, SHARED)
     owned = nearby(pattern, capacity), events(pattern), nearby(pattern, capacity)
@@ -72,7 +73,6 @@ def csg(
         footprint = footprints[index]
         frame = frames[footprint.frame]
         view = view_of(footprint, frame, camera)
-        method[index] = CSG
         curved = is_curved(frame)
         dw = frame.eye[2]
         top = min(high + thin, dw * (1.0 - 1e-9))
@@ -161,14 +161,17 @@ def csg(
                 n_world = normal_to_world(frame, facing)
                 at_world = to_world(frame, x, y, at)
                 e = unit((eye[0] - at_world[0], eye[1] - at_world[1], eye[2] - at_world[2]))
+                if curved and dot(n_world, e) <= 0.0:  # next to the outline, by the second order
+                    facing, n_world = n, normal_to_world(frame, n)
                 colour = (material.emissive[0], material.emissive[1], material.emissive[2])
                 if bounces == 0:
                     colour = ambient(material, lighting, albedo, n_world, e)
-                red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
+                if not indirect:
+                    red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 lit = np.uint64(0)
                 off = lift(pattern, found, m) / math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
                 sx, sy, sw = x + off * n[0], y + off * n[1], at + off * n[2]
-                for l in range(len(lights)):
+                for l in range(0 if indirect else len(lights)):
                     if (footprint.blocked >> np.uint64(l)) & np.uint64(1):
                         continue
                     d = light_to_pattern(frame, lights[l])
@@ -230,16 +233,24 @@ def csg(
                 continue
             across = int(math.ceil(1.05 * across * min((error / target) ** (2.0 / 3.0), float(MOST))))
             if sparing and across > MOST:
-                method[index] = NOT_MINE
+                taken = 0
                 break
             across = down = min(across, most)
+        if taken == 0:
+            method[index] = NOT_MINE
+            continue
         for k in range(departed, gone[0]):
             leaving[k].through[0] /= taken
             leaving[k].through[1] /= taken
             leaving[k].through[2] /= taken
-        radiance[index, 3] = error / SURE
+        if not indirect:
+            method[index] = CSG
+            radiance[index, :] = 0.0
+        radiance[index, 0] += red / taken
+        radiance[index, 1] += green / taken
+        radiance[index, 2] += blue / taken
+        radiance[index, 3] += error / SURE
         if curved:
             radiance[index, 3] += unsure(frame, max(p0 - fp0, fp1 - p1, q0 - fq0, fq1 - q1, pattern.width))
-        radiance[index, 4] = float(looked) * max(shared, 1)
-        radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / taken, green / taken, blue / taken
+        radiance[index, 4] += float(looked) * max(shared, 1)
     keep(owned)

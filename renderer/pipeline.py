@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
-from renderer.tables import BARE, BASE, NOT_MINE, RAY, Floats, Pattern
+from renderer.tables import BARE, BASE, NOT_MINE, RAY, Floats, Lighting, Pattern
 from renderer.trace import Truth
 
 TILE = 64  # pixels
@@ -70,6 +70,22 @@ class Settings(NamedTuple):
     seed: int
     texels: int
     tolerance: float
+
+
+class Part(NamedTuple):
+    """The footprints of one object in a tile."""
+
+    row: int  # of OBJECT
+    pattern: Pattern
+    seen: Footprints
+    lighting: Lighting
+    radiance: Floats  # (n, 5) of all footprints: RGB, predicted error, cost
+    method: NDArray[np.uint8]  # (n,)
+    spent: dict[str, float]
+
+    def took(self, name: str, start: float) -> None:
+        """Add up the seconds since `start`."""
+        self.spent[name] = self.spent.get(name, 0.0) + time.perf_counter() - start
 
 
 @dataclass
@@ -136,80 +152,111 @@ class Frame:
         self, row: int, pattern: Pattern, seen: Footprints, chosen: NDArray[np.int64], radiance: Floats,
         method: NDArray[np.uint8], spent: dict[str, float],
     ) -> None:  # fmt: skip
-        """Shade the footprints `chosen` of one object by the method asked for; add up the seconds of each kernel."""
+        """Shade the footprints `chosen` of one object by the method asked for; add up the seconds of each kernel.
+
+        Direct light is found as without bounces, and what comes from facet to facet and from other objects by samples;
+        but for `csg`, which samples both at once, and what `line` knows in closed form.
+        """
         scene, settings = self.scene, self.settings
-        rest = (
-            seen.frames, scene.camera, scene.lighting, scene.materials, scene.slots[row], self.albedo, radiance, method
+        part = Part(row, pattern, seen, scene.lighting, radiance, method, spent)
+        if settings.bounces == 0 or settings.method == "relief":
+            self._direct(part, chosen)
+            return
+        if settings.method == "csg":
+            self._sample(part, chosen, 0.0)
+            return
+        if not self.caster.shadows:
+            start = time.perf_counter()
+            line(MODES.get(settings.method, LOOSE), settings.bounces, pattern, seen.footprints, chosen, *self._of(part))
+            part.took("line", start)
+            chosen = chosen[method[chosen] == NOT_MINE]
+        if len(chosen):
+            self._direct(part._replace(lighting=scene.lighting._replace(sky=np.zeros(3))), chosen)
+            self._sample(part, chosen, settings.tolerance, indirect=True)
+
+    def _of(self, part: Part) -> tuple[Any, ...]:
+        """What all kernels take after the footprints."""
+        scene = self.scene
+        return (
+            part.seen.frames, scene.camera, part.lighting, scene.materials, scene.slots[part.row], self.albedo,
+            part.radiance, part.method,
         )  # fmt: skip
 
-        def timed(name: str, start: float) -> None:
-            spent[name] = spent.get(name, 0.0) + time.perf_counter() - start
+    def _direct(self, part: Part, chosen: NDArray[np.int64]) -> None:
+        """Shade footprints by the lights alone, and by all of the sky."""
+        settings, pattern, footprints, method = self.settings, part.pattern, part.seen.footprints, part.method
+        rest = self._of(part)
 
         def sample(which: NDArray[np.int64], tolerance: float, sparing: bool) -> None:
             start = time.perf_counter()
             csg(
-                settings.samples, settings.bounces, tolerance, sparing, settings.seed, pattern, seen.footprints, which,
-                *rest, NO_RAYS, np.zeros(1, np.int64),
+                settings.samples, 0, False, tolerance, sparing, settings.seed, NO_RAYS, np.zeros(1, np.int64), pattern,
+                footprints, which, *rest,
             )  # fmt: skip
-            timed("csg", start)
+            part.took("csg", start)
 
-        if settings.bounces > 0 and self.caster.shadows:  # what leaves this surface may meet another one
-            columns = math.ceil(math.sqrt(settings.samples))
-            each = columns * math.ceil(settings.samples / columns)
-            for first in range(0, len(chosen), max(RAYS // each, 1)):
-                start = time.perf_counter()
-                part = chosen[first : first + max(RAYS // each, 1)]
-                leaving, gone = np.zeros(len(part) * each, RAY), np.zeros(1, np.int64)
-                csg(
-                    settings.samples, settings.bounces, 0.0, False, settings.seed, pattern, seen.footprints, part,
-                    *rest, leaving, gone,
-                )  # fmt: skip
-                timed("csg", start)
-                start = time.perf_counter()
-                bounce.meet(
-                    leaving[: gone[0]], self.caster, scene.patterns, scene.slots, settings.seed, seen.footprints,
-                    scene.lighting, scene.materials, self.albedo, radiance,
-                )  # fmt: skip
-                timed("bounce", start)
-            return
         if settings.method == "csg" and pattern is not BARE:
             sample(chosen, 0.0, sparing=False)
             return
         start = time.perf_counter()
         if isinstance(self.model, Textures) and pattern is not BARE:
-            relief.relief(settings.samples, settings.seed, self.model.of[row], seen.footprints, chosen, *rest)
-            timed("relief", start)
+            relief.relief(settings.samples, settings.seed, self.model.of[part.row], footprints, chosen, *rest)
+            part.took("relief", start)
             return
         if settings.method in ("lines", "area") and pattern is not BARE:
             left = chosen
         else:
-            line(MODES.get(settings.method, LOOSE), settings.bounces, pattern, seen.footprints, chosen, *rest)
-            timed("line", start)
+            line(MODES.get(settings.method, LOOSE), 0, pattern, footprints, chosen, *rest)
+            part.took("line", start)
             left = chosen[method[chosen] == NOT_MINE]
-        if (
-            len(left) and settings.method in ("lines", "area", "auto") and settings.bounces == 0
-        ):  # else it is left to samples
+        if len(left) and settings.method in ("lines", "area", "auto"):
             start = time.perf_counter()
             most = FEW_STRIPS if settings.method == "auto" else STRIPS
-            flat, ordered = int(row) in self.flat, in_blocks(seen.footprints, left)
+            flat, ordered = int(part.row) in self.flat, in_blocks(footprints, left)
             if settings.method == "lines":
                 line_sampling(
-                    settings.samples, settings.seed, settings.tolerance, most, flat, pattern, seen.footprints, ordered,
-                    *rest,
-                )  # fmt: skip
+                    settings.samples, settings.seed, settings.tolerance, most, flat, pattern, footprints, ordered, *rest
+                )
             else:
-                area_sampling(settings.tolerance, most, flat, pattern, seen.footprints, ordered, *rest)
-            timed("lines" if settings.method == "lines" else "area", start)
+                area_sampling(settings.tolerance, most, flat, pattern, footprints, ordered, *rest)
+            part.took("lines" if settings.method == "lines" else "area", start)
             left = left[method[left] == NOT_MINE]
-        if len(left) and settings.method == "auto" and settings.bounces == 0:
+        if len(left) and settings.method == "auto":
             sample(left, settings.tolerance, sparing=True)
-            left = in_blocks(seen.footprints, left[method[left] == NOT_MINE])
+            left = in_blocks(footprints, left[method[left] == NOT_MINE])
             start = time.perf_counter()  # with as many strips as there is room for, where samples do not do
-            area_sampling(settings.tolerance, STRIPS, int(row) in self.flat, pattern, seen.footprints, left, *rest)
-            timed("area", start)
+            area_sampling(settings.tolerance, STRIPS, int(part.row) in self.flat, pattern, footprints, left, *rest)
+            part.took("area", start)
             left = left[method[left] == NOT_MINE]
         if len(left):
             sample(left, settings.tolerance, sparing=False)
+
+    def _sample(self, part: Part, chosen: NDArray[np.int64], tolerance: float, indirect: bool = False) -> None:
+        """Shade footprints by rays from facet to facet, and on to other objects if there are any.
+
+        indirect: add what these bring to what is there.
+        """
+        scene, settings = self.scene, self.settings
+        each, batch = 0, len(chosen)
+        if self.caster.shadows:
+            columns = math.ceil(math.sqrt(settings.samples))
+            each, tolerance = columns * math.ceil(settings.samples / columns), 0.0
+            batch = max(RAYS // each, 1)
+        for first in range(0, len(chosen), batch):
+            start = time.perf_counter()
+            some = chosen[first : first + batch]
+            leaving, gone = np.zeros(len(some) * each, RAY), np.zeros(1, np.int64)
+            csg(
+                settings.samples, settings.bounces, indirect, tolerance, False, settings.seed, leaving, gone,
+                part.pattern, part.seen.footprints, some, *self._of(part),
+            )  # fmt: skip
+            part.took("csg", start)
+            start = time.perf_counter()
+            bounce.meet(
+                leaving[: gone[0]], self.caster, scene.patterns, scene.slots, settings.seed, part.seen.footprints,
+                scene.lighting, scene.materials, self.albedo, part.radiance,
+            )  # fmt: skip
+            part.took("bounce", start)
 
 
 def render(

@@ -270,6 +270,7 @@ RAY = np.dtype(
         ("number", "i8"),  # of the footprint's samples
         ("bounces", "i4"),  # that are left, the one on what it meets counted
         ("object", "i4"),  # row of OBJECT that it leaves
+        ("clear", "f8"),  # how far it goes before it has left the groove it comes from, world units
     ]
 )  # fmt: skip
 """A ray that has left an object's surface for the rest of the scene."""

@@ -73,35 +73,14 @@ def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> f
 
 def left_out(scene: Scene) -> Iterator[Problem]:
     """What the renderer does not do yet."""
-    yield from _not_followed(scene) if scene.render.bounces > 0 else _bounces_wanted(scene)
-
-
-def _bounces_wanted(scene: Scene) -> Iterator[Problem]:
     for name in sorted(_used_materials(scene)):
-        material = scene.materials[name]
-        if material.transmission > 0 and material.metallic < 1:
-            found = f"{material.transmission:g}: what is refracted is seen by bounces alone, and there are none"
-            yield _warning(("materials", name, "transmission"), "0, as render.bounces is 0", found)
-        if material.roughness == 0 and _has_mirror(material):
-            found = "0: an ideal mirror is seen by bounces alone, and there are none"
-            yield _warning(("materials", name, "roughness"), "more than 0, as render.bounces is 0", found)
-
-
-def _not_followed(scene: Scene) -> Iterator[Problem]:
-    used = sorted(_used_materials(scene))
-    for name in used:
         material = scene.materials[name]
         if material.transmission > 0 and material.metallic < 1:
             found = f"{material.transmission:g}: refraction is not followed yet, left out"
             yield _warning(("materials", name, "transmission"), "0", found)
-    count = scene.render.bounces
-    mirrors = any(scene.materials[name].roughness == 0 and _has_mirror(scene.materials[name]) for name in used)
-    if not mirrors:
-        found = f"{count}: light is followed from ideal mirrors alone yet, of roughness 0, and there are none"
-        yield _warning(("render", "bounces"), "0", found)
-    elif len(scene.objects) > 1 and scene.render.method != "geometry":
-        found = f"{count}: mirrors show their own object and the sky yet, and other objects by method geometry alone"
-        yield _warning(("render", "bounces"), "0, or one object", found)
+        if scene.render.bounces == 0 and material.roughness == 0 and _has_mirror(material):
+            found = "0: an ideal mirror is seen by bounces alone, and there are none"
+            yield _warning(("materials", name, "roughness"), "more than 0, as render.bounces is 0", found)
 
 
 def _has_mirror(material: Material) -> bool:

@@ -108,7 +108,9 @@ class Render(Model):
         default=0,
         ge=0,
         le=16,
-        description="How often light is followed on, from ideal mirrors (roughness 0). Default: 0.",
+        description="How often light is followed on, from facet to facet and from object to object, by whatever "
+        "they are made of. Where the last of these rays ends, a surface is lit by the lights and by all of the sky; "
+        "so 0 is direct light, under a sky that nothing hides. Default: 0.",
     )
     tolerance: float = Field(
         default=0.002,

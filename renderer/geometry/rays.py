@@ -81,10 +81,11 @@ def follow(
             if rise > 0.0 and len(leaving) > 0:
                 ray = leaving[gone[0]]
                 gone[0] += 1
-                place = to_world(frame, x + (top - w) * gp, y + (top - w) * gq, top)
+                place = to_world(frame, x, y, w)
                 for c in range(3):
                     ray.origin[c], ray.way[c], ray.through[c] = place[c], way[c], through[c]
                 ray.footprint, ray.number, ray.bounces, ray.object = index, number, left, frame.object
+                ray.clear = max(-w, 0.0) / rise
             elif rise > 0.0:
                 sky = sky_from(lighting, way)
                 red, green, blue = red + through[0] * sky[0], green + through[1] * sky[1], blue + through[2] * sky[2]

@@ -104,10 +104,11 @@ def _carried(made: body.Body) -> Floats:
 
 
 def foreign_scene(
-    mi: Any, scene: schema.Scene, sampler: str = "independent", depth: int = 2, around: Floats | None = None
+    mi: Any, scene: schema.Scene, sampler: str = "independent", around: Floats | None = None
 ) -> Any:
-    """depth: so many rays a path, direct light with 2. around: the picture (h, w, 3) of an envmap, which is seen, and
-    which the scene itself leaves out. Mitsuba has its first and its last row at the poles."""
+    """around: the picture (h, w, 3) of an envmap, which is seen, and which the scene itself leaves out. Mitsuba has its
+    first and its last row at the poles."""
+    depth = 2 + scene.render.bounces  # rays a path, direct light with 2
     camera = scene.camera
     width, height = camera.resolution
     content: dict[str, Any] = {

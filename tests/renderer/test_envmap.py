@@ -254,7 +254,7 @@ def test_as_mitsuba_has_it(shape: str, plate: Plate, radiance: Radiance) -> None
     nodes = np.stack([across * np.sin(turn), across * np.cos(turn), np.cos(tilt)[:, None] + 0.0 * turn], axis=2)
     report = schema.check(scene)
     assert report.scene is not None
-    theirs_scene = foreign.foreign_scene(mitsuba, report.scene, depth=10, around=smooth(nodes))
+    theirs_scene = foreign.foreign_scene(mitsuba, report.scene, around=smooth(nodes))
     theirs = np.array([foreign.picture(mitsuba, theirs_scene, 64, seed) for seed in range(RUNS)])
     scene["lights"] = [ENVMAP]
     sky, solids = files(smooth(directions(256))), {}  # type: ignore[var-annotated]

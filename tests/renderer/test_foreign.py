@@ -71,6 +71,14 @@ def test_the_truth_is_no_private_one(name: str, mitsuba: Any, plate: Plate, radi
     differ_by_noise(plate(grooves, lights=lights, materials=PALETTE, camera=camera), mitsuba, radiance)
 
 
+@pytest.mark.parametrize("name", ["crossing", "ends and corners"])
+def test_light_from_facet_to_facet(name: str, mitsuba: Any, plate: Plate, radiance: Radiance) -> None:
+    grooves, lights = SCENES[name]
+    camera = {"origin": [0.1, -1.2, 1.1], "target": [0, 0, 0], "fov": 25, "resolution": [32, 24]}
+    scene = plate(grooves, lights=lights, materials=PALETTE, camera=camera, render={"bounces": 3})
+    differ_by_noise(scene, mitsuba, radiance)
+
+
 def test_the_truth_on_a_sphere(mitsuba: Any, plate: Plate, radiance: Radiance) -> None:
     """A ball as a whole, its outline in the picture and its nearest meridian amid it, seen a little from above: grooves
     along meridians and obliquely over them, with ends and corners, cut and raised."""
