@@ -171,7 +171,9 @@ class Frame:
             part.took("line", start)
             chosen = chosen[method[chosen] == NOT_MINE]
         if len(chosen):
-            self._direct(part._replace(lighting=scene.lighting._replace(sky=np.zeros(3))), chosen)
+            lights, sky, around, _ = scene.lighting
+            alone = Lighting(lights, np.zeros(3), left=float(sky.mean()) + around.white)
+            self._direct(part._replace(lighting=alone), chosen)
             self._sample(part, chosen, settings.tolerance, indirect=True)
 
     def _of(self, part: Part) -> tuple[Any, ...]:

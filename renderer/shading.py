@@ -321,7 +321,9 @@ def are_distant(lights: NDArray[np.void]) -> bool:
 def white(lighting: Lighting, at: Vector) -> float:
     """Radiance of a white matt surface at a world point, turned to each light, under the sky: what errors are measured
     by. The mean of the channels."""
-    total = lighting.sky[0] + lighting.sky[1] + lighting.sky[2] + 3.0 * lighting.surroundings.white
+    total = (
+        3.0 * lighting.left + lighting.sky[0] + lighting.sky[1] + lighting.sky[2] + 3.0 * lighting.surroundings.white
+    )
     for light in lighting.lights:
         part = (light.color[0] + light.color[1] + light.color[2]) / math.pi
         if light.kind != DIRECTIONAL:

@@ -305,6 +305,7 @@ class Lighting(NamedTuple):
     lights: NDArray[np.void]  # (n,) LIGHT, n <= 64
     sky: Floats  # (3,) radiance of the constant sky
     surroundings: Surroundings = NO_SURROUNDINGS
+    left: float = 0.0  # the sky that rays find instead: radiance of a white matt surface under it, mean of the channels
 
 
 METHODS = ("none", "base", "segment", "line", "csg", "geometry", "relief", "area", "lines")

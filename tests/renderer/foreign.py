@@ -103,9 +103,7 @@ def _carried(made: body.Body) -> Floats:
     return np.asarray(carried / np.maximum(length, 1e-300))
 
 
-def foreign_scene(
-    mi: Any, scene: schema.Scene, sampler: str = "independent", around: Floats | None = None
-) -> Any:
+def foreign_scene(mi: Any, scene: schema.Scene, sampler: str = "independent", around: Floats | None = None) -> Any:
     """around: the picture (h, w, 3) of an envmap, which is seen, and which the scene itself leaves out. Mitsuba has its
     first and its last row at the poles."""
     depth = 2 + scene.render.bounces  # rays a path, direct light with 2
