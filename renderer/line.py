@@ -14,7 +14,9 @@ span a plane; the cross-section is what that plane cuts out of the solid. Over r
 tangent plane.
 
 Where nothing stands above the plane, grooves do not mask each other, and each is a cross-section of its own; those
-that overlap share one.
+that overlap share one. Then light that matt facets exchange is in closed form too (`strings`), however often it
+bounces, and so is a first bounce where facets are ideal mirrors in part; a coat, which is not matt where light leaves
+it, is left to samples, as all gloss is.
 
 A profile that overhangs is no cross-section for this: `auto` leaves its grooves to `area`, and as methods of the
 whole image `line` and `segment` leave them out, so that the plane is seen there.
@@ -40,6 +42,7 @@ from renderer.geometry.layout import (
     find_within,
     fold_within,
     lay,
+    longer,
     meet_lights,
     near_groove,
     pick,
@@ -51,6 +54,18 @@ from renderer.geometry.layout import (
 from renderer.geometry.reach import Reach
 from renderer.geometry.reflection import reflections
 from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, spans
+from renderer.geometry.strings import (
+    APART,
+    BEYOND,
+    NEAR_LAMP,
+    exchange,
+    gathered,
+    light_up,
+    nearest_lamp,
+    place,
+    recall,
+    stretch_of,
+)
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.shading import (
@@ -75,18 +90,23 @@ STRICT = 0  # `auto`: mark it as not its own
 LOOSE = 1  # `line` for the whole image: the grooves parallel to the nearest one, nothing else
 PAPER = 2  # `segment` for the whole image
 
+CELLS = 3.0
+"""Parts of a footprint in which light from facet to facet has one colour on each."""
+NARROW = 1e-4  # of a facet
+
 GAUSS = 0.5 / math.sqrt(3.0)
 
 
 @leaf
 def tint_of(
-    index: int, i: int, distant: bool, kept: bool, curved: bool, folded_at: float, places_b: Floats, heights: Floats,
-    pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float, eye_h: float, lighting: Lighting,
-    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, work: Work,
+    index: int, i: int, distant: bool, kept: bool, gathers: bool, curved: bool, folded_at: float, places_b: Floats,
+    heights: Floats, pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float, eye_h: float,
+    lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, work: Work,
 ) -> int:  # fmt: skip
     """The row of `work.tint` with the colours of facet i, found once a footprint where they are `kept`.
 
-    The eye sees its points at `places_b` and `heights`; `folded_at`: from where a curved base's bend counts.
+    The eye sees its points at `places_b` and `heights`; `folded_at`: from where a curved base's bend counts. gathers:
+    light from the sky is left to that from other facets.
 
     Where they change along the groove they are the mean of two places, as far apart as the footprint is long on root
     mean square. On curved paths the normal turns on the way to them, and to where the facet is seen through the plane.
@@ -132,7 +152,10 @@ def tint_of(
             colour = lit_by(lights[l], material, n, e, at)
             for c in range(3):
                 tint[l, c] += colour[c] / places
-        colour = ambient(material, lighting, albedo, n, e)
+        if gathers:
+            colour = (material.emissive[0], material.emissive[1], material.emissive[2])
+        else:
+            colour = ambient(material, lighting, albedo, n, e)
         for c in range(3):
             tint[len(lights), c] += colour[c] / places
     return row
@@ -175,10 +198,10 @@ def weight_all(
 
 
 @leaf
-def section_for_mirrors(curved: bool, pattern: Pattern, slots: NDArray[np.int32], n: int, work: Work) -> None:
+def complete_section(curved: bool, pattern: Pattern, slots: NDArray[np.int32], n: int, work: Work) -> None:
     """Complete `work.section`: which material its facets have, and which part of each is lit.
 
-    Mirrors take a curved base for its tangent plane: what they show is near.
+    Mirrors and light from facet to facet take a curved base for its tangent plane: what they show is near.
     """
     section, places = work.section, work.bent if curved else work.b
     for i in range(n - 1):
@@ -211,8 +234,8 @@ def line(
     """Shade the footprints `chosen` of one object; write their radiance (n, 3) and the method each took.
 
     What has too many grooves in it is not its own, whatever the mode: STRICT, LOOSE or PAPER. bounces: how often light
-    is followed; this does so from mirror to mirror where nothing stands above the plane. slots: rows of `materials` for
-    the pattern's facets, the object's own first.
+    is followed; this does so from mirror to mirror and from matt to matt where nothing stands above the plane. slots:
+    rows of `materials` for the pattern's facets, the object's own first.
     """
     owned = work_for(pattern, len(lighting.lights))
     work, pattern, frames, lighting = borrow(owned), borrow(pattern), borrow(frames), borrow(lighting)
@@ -220,16 +243,21 @@ def line(
     lights = lighting.lights
     strict, paper = mode == STRICT, mode == PAPER
     distant = are_distant(lights)
-    matte = True
+    matte = bare = True
     for slot in slots:
+        bare = bare and materials[slot].f90 == 0.0
         matte = matte and materials[slot].metallic == 0.0 and materials[slot].f90 == 0.0
     answer = answers(materials, slots) if bounces > 0 else 0
-    shows, samples = answer & MIRROR != 0, answer & (DIFFUSE | GLOSSY) != 0
+    shows, gathers = answer & MIRROR != 0, answer & DIFFUSE != 0
+    samples = answer & GLOSSY != 0 or (shows and gathers and (bounces > 1 or not bare))
+    samples = samples or (gathers and has_picture(lighting))
+    beyond = BEYOND * pattern.width if gathers else 0.0
     ridged = pattern.height > 0.0
     if has_picture(lighting) and answer & (MIRROR | GLOSSY) != 0:  # of which rays get more than a few directions
         for index in chosen:
             method[index] = NOT_MINE
         return
+    stretched, stretch_x, stretch_y, stretch = -1, 0.0, 0.0, 0.0  # a frame and T, and what `stretch_of` says of them
     most = 0  # points of a cross-section
     for profile in pattern.profiles:
         most = max(most, profile.count)
@@ -243,12 +271,17 @@ def line(
         clear = meet_lights(curved, pattern, frame, view, footprint.blocked, lights, work)
         if strict and (not clear or eye_w <= LEVEL * pattern.height or (shows and ridged)):
             continue
-        if samples and ridged:
+        if (samples or gathers) and ridged:
             continue
+        lamp = math.inf
+        if gathers and not distant:
+            lamp = nearest_lamp(frame, view, lights)
+            if lamp < NEAR_LAMP * pattern.width:
+                continue
         eye_p, eye_q = (frame.eye[0] - view.p) / eye_w, (frame.eye[1] - view.q) / eye_w
         grooves = entries = 0
         if not paper and clear and len(pattern.families) > 0 and eye_w > LEVEL * pattern.height:
-            grooves, entries, r = fold_within(curved, pattern, frame, view, lights, work)
+            grooves, entries, r = fold_within(curved, beyond, pattern, frame, view, lights, work)
         folded = grooves > 0
         if entries > 1:
             work.known[:, 0] = np.inf
@@ -264,10 +297,10 @@ def line(
             wider = wider_of(pattern, frame, eye_p, eye_q) if curved else 1.0
             r = reach_along(paper, wider, pattern, view, eye_p, eye_q, tx, ty, work)
             if strict and count > 0 and not pattern.parallel:
-                count = find_within(pattern, view, r, work)
+                count = find_within(pattern, view, longer(r, beyond), work)
                 if count < 0:
                     continue
-            grooves = pick(strict, pattern, view, r, count, work)
+            grooves = pick(strict, beyond, pattern, view, longer(r, beyond), count, work)
         chords = ROUND if curved else 0
         if samples and grooves > 0:
             continue
@@ -286,6 +319,9 @@ def line(
         eye_d = (frame.eye[0] - view.p) * bx + (frame.eye[1] - view.q) * by
         eye_t = (frame.eye[0] - view.p) * r.tx + (frame.eye[1] - view.q) * r.ty
         eye_h = 0.0 if paper else 1.0
+        if gathers and (footprint.frame != stretched or r.tx != stretch_x or r.ty != stretch_y):
+            stretched, stretch_x, stretch_y = footprint.frame, r.tx, r.ty
+            stretch = stretch_of(frame, r.tx, r.ty)
         bow = bow_of(frame, bx, by)
         chord = chord_of(pattern, bow, len(lights), work) if curved and ridged else math.inf
         red = green = blue = 0.0
@@ -309,6 +345,8 @@ def line(
             # where repeats are folded, a period stands for those all over the footprint
             amid = 0.5 * (work.near[first].start + work.near[last - 1].finish) if folded else 0.0
             n = lay(pattern, r, chord, first, last, work)
+            lone = last - first == 1
+            near = work.near[first]
             first = last
             b, h = work.b, work.w
             if curved:
@@ -331,8 +369,30 @@ def line(
             if not (ridged and (folded or curved)):
                 low, high = (work.x[0], work.x[n - 1]) if curved else (work.b[0], work.b[n - 1])
                 plain -= copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, low, high)
+            cavity, ready = -1, True
+            if gathers:
+                shared = lone and not curved and not paper and r.high - r.low <= APART * lamp
+                like = pattern.grooves[pattern.pieces[near.piece].groove].like
+                cavity, ready = recall(
+                    lone, shared, like, near.turned, n, stretch, footprint.frame if distant else index,
+                    footprint.blocked, r, work.b, work.w, pattern, slots, work.strings,
+                )  # fmt: skip
+                if cavity < 0:
+                    method[index] = NOT_MINE
+                    break
+            if shows or not (ready or shared):
+                complete_section(curved, pattern, slots, n, work)
+            if not ready:
+                s = work.strings
+                lit_b, lit_w, of, lit_parts = work.b, work.w, work.section.material, work.section.lit
+                if shared:
+                    place(like, near.turned, 1.0 if distant else near.scale, pattern, slots, s)
+                    light_up(n, work.light, s)
+                    lit_b, lit_w, of, lit_parts = s.b, s.w, s.material, s.lit
+                exchange(
+                    cavity, bounces, curved, amid, frame, view, r, lit_b, lit_w, of, lit_parts, lighting, materials, s
+                )  # fmt: skip
             if shows:
-                section_for_mirrors(curved, pattern, slots, n, work)
                 d = work.mirrors.eye[0]
                 d[0], d[1], d[2], d[3] = eye_d, eye_t, eye_w, eye_h
             for i in range(n - 1):
@@ -352,8 +412,8 @@ def line(
                     plain -= part
                 kept = distant and (matte or not folded) and not curved
                 hue = tint_of(
-                    index, i, distant, kept, curved, amid, b, h, pattern, frame, view, r, eye_d, eye_h, lighting,
-                    materials, slots, albedo, work,
+                    index, i, distant, kept, gathers, curved, amid, b, h, pattern, frame, view, r, eye_d, eye_h,
+                    lighting, materials, slots, albedo, work,
                 )  # fmt: skip
                 tint = work.tint[hue]
                 red += part * tint[len(lights), 0]
@@ -380,6 +440,34 @@ def line(
                             folded, entries, work, paper, view, bx, by, centre, half, from_x, to_x
                         )
                     red, green, blue = red + lit * tint[l, 0], green + lit * tint[l, 1], blue + lit * tint[l, 2]
+                if gathers:
+                    cells, here, there = 1, low, high
+                    if not folded:
+                        here, there = max(low, min(r.low, -half)), min(high, max(r.high, half))
+                        cells = int(min(CELLS * (there - here) / (r.high - r.low), CELLS - 1.0)) + 1
+                    u0, u1 = 0.0, 1.0
+                    if here > work.x[i]:
+                        u0 = min(max(fraction_at(here, b0, w0, b1, w1, eye_d, eye_w, eye_h), 0.0), 1.0)
+                    if there < work.x[i + 1]:
+                        u1 = min(max(fraction_at(there, b0, w0, b1, w1, eye_d, eye_w, eye_h), 0.0), 1.0)
+                    if u1 - u0 < NARROW:  # a difference of sums has too few digits left
+                        cells, u0 = 1, min(max(0.5 * (u0 + u1 - NARROW), 0.0), 1.0 - NARROW)
+                        u1 = u0 + NARROW
+                    rest, y0, x0 = part, gathered(cavity, i, u0, work.strings), here
+                    for cell in range(cells):
+                        x1, u2, lit = there, u1, rest
+                        if cell + 1 < cells:
+                            x1 = x0 + (there - here) / cells
+                            u2 = fraction_at(x1, b0, w0, b1, w1, eye_d, eye_w, eye_h)
+                            lit = copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, x0, x1)
+                        y1 = gathered(cavity, i, u2, work.strings)
+                        if u2 > u0:
+                            mean = lit / (u2 - u0)
+                            red, green, blue = (
+                                red + mean * (y1[0] - y0[0]), green + mean * (y1[1] - y0[1]),
+                                blue + mean * (y1[2] - y0[2]),
+                            )  # fmt: skip
+                        rest, y0, x0, u0 = rest - lit, y1, x1, u2
                 if not shows:
                     continue
                 clear_of = mirrored(materials[work.section.material[i]], 0.0)

@@ -67,6 +67,7 @@ GROOVE = np.dtype(
         ("profile", "i4"),  # row of PROFILE
         ("priority", "i4"),  # rank: 0 is the lowest priority of the pattern, consecutive
         ("slot", "i4"),  # first entry of the groove's facets in Pattern.facet_slot
+        ("like", "i4"),  # the first groove with the same profile and materials
         ("scale_kind", "i4"),
         ("scale_a", "f8"), ("scale_b", "f8"), ("scale_c", "f8"),  # linear: start, end; sine: amplitude, periods,
         # phase (radians)

@@ -244,6 +244,7 @@ def dress(pattern: schema.Pattern, traced: Paths) -> Compiled:
     names: list[str] = []
     slots: list[int] = []
     tables: list[tuple[float, float]] = []
+    alike: dict[tuple[int, ...], int] = {}
     levels = sorted({groove.priority for groove in pattern.grooves})
     for row, groove in enumerate(pattern.grooves):
         g = grooves[row]
@@ -256,6 +257,7 @@ def dress(pattern: schema.Pattern, traced: Paths) -> Compiled:
             if name is not None and name not in names:
                 names.append(name)
             slots.append(-1 if name is None else names.index(name))
+        g["like"] = alike.setdefault((int(g["profile"]), *slots[g["slot"] :]), row)
         _scale(g, groove.scale, tables)
     if pattern.grooves:
         ends = np.array([PROFILE if groove.ends == "profile" else FLAT for groove in pattern.grooves], np.uint8)

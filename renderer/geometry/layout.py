@@ -18,6 +18,7 @@ from renderer.geometry.query import Nearby, find, nearby, over_crossing
 from renderer.geometry.reach import NEAR, STRAIGHT, TURNED, Reach
 from renderer.geometry.reflection import Mirrors, Section, mirrors
 from renderer.geometry.section import ACROSS, shifts
+from renderer.geometry.strings import BENT, Strings, strings
 from renderer.geometry.view import View, on_plane
 from renderer.kernel import callee, fixed, leaf
 from renderer.shading import light_to_pattern
@@ -63,6 +64,7 @@ class Work(NamedTuple):
     tinted: NDArray[np.int64]  # (2 facets + 1,) the footprint for which `tint` holds
     section: Section  # the cross-section as mirrors see it
     mirrors: Mirrors
+    strings: Strings
 
 
 @leaf
@@ -76,7 +78,7 @@ def work_for(pattern: Pattern, lights: int) -> Work:
         np.empty((SUMS, 2)), np.zeros((KNOWN + 1, 2)), np.empty(POINTS), np.empty((lights + 1, POINTS)),
         np.empty((6, 2)),
         np.empty((2 * facets + 1, lights + 1, 3)), np.full(2 * facets + 1, -1, np.int64),
-        Section(b, w, np.empty(POINTS, np.int64), np.empty((lights, POINTS, 2))), mirrors(),
+        Section(b, w, np.empty(POINTS, np.int64), np.empty((lights, POINTS, 2))), mirrors(), strings(lights),
     )  # fmt: skip
 
 
@@ -241,6 +243,15 @@ def reach_along(
 
 
 @leaf
+def longer(r: Reach, beyond: float) -> Reach:
+    """The same where so much more on either side along T matters."""
+    return Reach(
+        r.tx, r.ty, r.eye_t, r.low, r.high, r.length, r.spread, r.wide_low, r.wide_high, r.long_low - beyond,
+        r.long_high + beyond,
+    )  # fmt: skip
+
+
+@leaf
 def find_within(pattern: Pattern, view: View, r: Reach, work: Work) -> int:
     """Find the pieces whose cross-sections may reach anything that matters to the footprint."""
     bx, by = -r.ty, r.tx
@@ -266,16 +277,17 @@ def steepest(pattern: Pattern, groove: np.void, piece: np.void, s: float, slope:
 
 
 @leaf
-def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work: Work) -> int:
+def pick(strict: bool, beyond: float, pattern: Pattern, view: View, r: Reach, count: int, work: Work) -> int:
     """Fill `work.near` with the grooves that run along T, from left to right: how many.
 
     -1 where ridges overlap; strict: and where anything in reach is not parallel, ends, bends or changes its scale too
-    much, or overlaps.
+    much, or overlaps. beyond: so much of the reach along T is there for light from facet to facet, which hardly asks
+    for how grooves bend and scale.
     """
     found = work.found
     n = 0
     spread = max(-r.long_low, r.long_high) + max(-r.wide_low, r.wide_high)
-    length = max(-r.long_low, r.long_high)
+    length = max(-r.long_low, r.long_high) - beyond
     # Whose cross-sections must be known: where nothing stands above the plane, those inside the footprint alone, if
     # nothing overlaps them.
     low, high = (r.low, r.high) if pattern.height == 0.0 and not strict else (r.wide_low, r.wide_high)
@@ -324,6 +336,8 @@ def pick(strict: bool, pattern: Pattern, view: View, r: Reach, count: int, work:
             if closest <= 0.0:
                 return -1
             turn = abs(inwards) / closest
+            if beyond > 0.0 and turn * piece.half > BENT:
+                return -1
             if 0.5 * turn * r.length**2 > STRAIGHT * (r.high - r.low):
                 return -1
             if 0.5 * turn * (length - r.length) ** 2 > STRAIGHT * piece.half:
@@ -446,11 +460,12 @@ def chord_of(pattern: Pattern, bow: Bow, lights: int, work: Work) -> float:
 
 @callee
 def fold_within(
-    curved: bool, pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], work: Work
+    curved: bool, beyond: float, pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], work: Work
 ) -> tuple[int, int, Reach]:
     """Fill `work.near` with what stands for all grooves within reach, where they are many periods of one family.
 
-    How many rows, how many entries of `work.sums`, and the frame; no rows where all is left as it is.
+    How many rows, how many entries of `work.sums`, and the frame; no rows where all is left as it is. beyond: so much
+    farther along T must the family go on, for light from facet to facet.
     """
     none = Reach(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     which = crowded(pattern, view)
@@ -462,7 +477,9 @@ def fold_within(
     eye_p, eye_q = frame.eye[0] - view.p, frame.eye[1] - view.q
     wider = wider_of(pattern, frame, eye_p / eye_w, eye_q / eye_w) if curved else 1.0
     r = reach_along(False, wider, pattern, view, eye_p / eye_w, eye_q / eye_w, tx, ty, work)
-    if not runs_straight(family, view, r) or not is_alone(pattern, which, view, r, work.found):
+    wide = longer(r, beyond)
+    straight = runs_straight(family, view, r if family.radius > 0.0 else wide)
+    if not straight or not is_alone(pattern, which, view, wide, work.found):
         return 0, 0, none
     turn_lights(curved, frame, view, -ty, tx, lights, False, work)
     eye_d = eye_q * tx - eye_p * ty

@@ -197,7 +197,7 @@ def looked_at(plate: Plate, check: Check, kind: str, count: int, profile: list[l
         frame = seen.frames[footprint["frame"]]
         view = view_of(footprint, frame, camera)
         layout.meet_lights(False, pattern, frame, view, footprint["blocked"], lights, work)
-        rows, entries, _ = layout.fold_within(False, pattern, frame, view, lights, work)
+        rows, entries, _ = layout.fold_within(False, 0.0, pattern, frame, view, lights, work)
         found.append(rows + entries if rows else -1)
     return found
 

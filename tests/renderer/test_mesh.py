@@ -76,7 +76,7 @@ class Maker:
         most = {SCALE_LINEAR: max(numbers[:2]), SCALE_SINE: 1 + abs(numbers[0])}.get(kind, 1.0)
         most = max(v for _, v in table) if table else most
         self.grooves.append(
-            (len(self.profiles) - 1, priority, len(self.slots), kind, *numbers, len(self.table), len(table), most)
+            (len(self.profiles) - 1, priority, len(self.slots), 0, kind, *numbers, len(self.table), len(table), most)
         )
         self.slots += slots or [-1] * (len(profile) - 1)
         self.table += table
