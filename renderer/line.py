@@ -326,6 +326,7 @@ def line(
         chord = chord_of(pattern, bow, len(lights), work) if curved and ridged else math.inf
         red = green = blue = 0.0
         plain = 1.0  # the share of the plane around the grooves
+        full = False  # there is more than there is room for
         first = 0
         while first < grooves:
             last = grooves if ridged and not folded else first + 1
@@ -378,7 +379,7 @@ def line(
                     footprint.blocked, r, work.b, work.w, pattern, slots, work.strings,
                 )  # fmt: skip
                 if cavity < 0:
-                    method[index] = NOT_MINE
+                    full = True
                     break
             if shows or not (ready or shared):
                 complete_section(curved, pattern, slots, n, work)
@@ -479,12 +480,14 @@ def line(
                     i, low, high, n, bounces, r.spread, frame, view, r.tx, r.ty, lighting, materials, albedo,
                     work.section, work.mirrors,
                 )  # fmt: skip
-                if made < 0:
-                    method[index] = NOT_MINE
+                full = full or made < 0
                 for k in range(made):
                     row = work.mirrors.seen[k]
                     lit = copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, row[0], row[1])
                     red, green, blue = red + lit * row[2], green + lit * row[3], blue + lit * row[4]
+        if full:
+            method[index] = NOT_MINE
+            continue
         if folded and plain < 0.0:  # what a fold is off by
             red, green, blue = red / (1.0 - plain), green / (1.0 - plain), blue / (1.0 - plain)
         if plain > 1e-12:

@@ -74,11 +74,11 @@ def test_walls_of_a_box() -> None:
 def test_nothing_passes_through_a_peak() -> None:
     """Two V side by side, whose peak reaches the plane, see nothing of each other; behind a lower one part is seen."""
     factor, _, _ = factors([(0, 0), (1, -1), (2, 0), (3, -1), (4, 0)])
-    assert np.abs(factor[:2, 2:]).max() < 1e-15
-    assert np.abs(factor[2:, :2]).max() < 1e-15
+    assert np.abs(factor[:2, 2:]).max() < 1e-14
+    assert np.abs(factor[2:, :2]).max() < 1e-14
     lower, _, _ = factors([(0, 0), (1, -1), (2, -0.5), (3, -1), (4, 0)])
-    assert abs(lower[1, 2]) < 1e-15
-    assert lower[0, 3] > 0.1
+    assert abs(lower[1, 2]) < 1e-14
+    assert lower[0, 3] > 0.04
 
 
 def seen_by_rays(points: Points, i: int, samples: int) -> Floats:
@@ -171,12 +171,13 @@ def test_furnace(plate: Callable[..., Json], radiance: Callable[..., Floats], pr
 
 def test_endless_bounces_in_a_v(plate: Callable[..., Json], radiance: Callable[..., Floats]) -> None:
     """From straight above at a distance each wall shows the mean of the radiosity that a dense system gives it."""
-    camera = {"origin": [0, 0, 60], "target": [0, 0, 0], "up": [0, 1, 0], "fov": 1.0, "resolution": [12, 9]}
+    camera = {"origin": [0, 0, 600], "target": [0, 0, 0], "up": [0, 1, 0], "fov": 1.0, "resolution": [12, 9]}
     sky = [{"type": "constant", "radiance": [1, 1, 1]}]
-    shown = radiance(
-        plain(plate, VEE, sky, 16, step=0.16, camera=camera, size=[9, 9], groove={"repeat": {
-            "type": "linear", "count": 70, "step": [0.16, 0]}}), method="line",
-    )  # fmt: skip
+    rows = {
+        "path": {"type": "polyline", "points": [[-9, -20], [-9, 40]]},
+        "repeat": {"type": "linear", "count": 200, "step": [0.16, 0]},
+    }
+    shown = radiance(plain(plate, VEE, sky, 16, camera=camera, size=[20, 20], groove=rows), method="line")
     factor, to_sky, length = factors([(-0.08, 0), (0, -0.12), (0.08, 0)], 300)
     for c, albedo in enumerate(MATT["base_color"]):  # type: ignore[arg-type, var-annotated]
         whole = np.linalg.solve(np.eye(600) - albedo * factor, albedo * to_sky)
@@ -241,7 +242,7 @@ def test_stretched_in_the_world(plate: Callable[..., Json], picture: Callable[..
 
 def test_many_in_a_pixel(plate: Callable[..., Json], picture: Callable[..., Any]) -> None:
     """Repeats that are folded, and rings."""
-    rows = {"repeat": {"type": "linear", "count": 400, "step": [0.008, 0]}}
+    rows = {"repeat": {"type": "linear", "count": 400, "step": [0.009, 0]}}
     fine = {"type": "v", "width": 0.008, "depth": 0.005}
     data = plain(plate, fine, [SUN, MOON, SKY], 3, groove=rows)
     rings = {"path": {"type": "circle", "center": [1, 1], "radius": 0.96},
