@@ -326,7 +326,7 @@ def line(
         chord = chord_of(pattern, bow, len(lights), work) if curved and ridged else math.inf
         red = green = blue = 0.0
         plain = 1.0  # the share of the plane around the grooves
-        full = False  # there is more than there is room for
+        full = False  # there is more than this has room for, or knows
         first = 0
         while first < grooves:
             last = grooves if ridged and not folded else first + 1
@@ -372,11 +372,14 @@ def line(
                 plain -= copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, low, high)
             cavity, ready = -1, True
             if gathers:
-                shared = lone and not curved and not paper and r.high - r.low <= APART * lamp
+                if not lone:  # what is left of grooves that overlap is no profile
+                    full = True
+                    break
+                shared = not curved and not paper and r.high - r.low <= APART * lamp
                 like = pattern.grooves[pattern.pieces[near.piece].groove].like
                 cavity, ready = recall(
-                    lone, shared, like, near.turned, n, stretch, footprint.frame if distant else index,
-                    footprint.blocked, r, work.b, work.w, pattern, slots, work.strings,
+                    shared, like, near.turned, n, stretch, footprint.frame if distant else index, footprint.blocked, r,
+                    pattern, slots, work.strings,
                 )  # fmt: skip
                 if cavity < 0:
                     full = True

@@ -117,11 +117,13 @@ def nearest_lamp(frame: np.void, view: View, lights: NDArray[np.void]) -> float:
 @callee
 def cut(at: int, count: int, stretch: float, s: Strings) -> bool:
     """Cut the facets of the cross-section (s.b, s.w) of `count` points into elements and find their factors, row `at`;
-    False: they are too many."""
+    False: they are too many, or a wall goes back over itself."""
     facets = count - 1
     first, node = s.first[at], s.node[at]
     length = 0.0
     for i in range(facets):
+        if i > 0 and s.b[i - 1] == s.b[i + 1] and (s.w[i] - s.w[i - 1]) * (s.w[i + 1] - s.w[i]) < 0.0:
+            return False
         length += math.hypot(stretch * (s.b[i + 1] - s.b[i]), s.w[i + 1] - s.w[i])
     least = min(max(ELEMENTS_ABOUT / facets, 1.0), 4.0)
     n = 0
@@ -177,26 +179,21 @@ def factors(
 
 @leaf
 def recall(
-    lone: bool, shared: bool, like: int, turned_by: float, count: int, stretch: float, index: int, blocked: np.uint64,
-    r: Reach, b: Floats, w: Floats, pattern: Pattern, slots: NDArray[np.int32], s: Strings,
+    shared: bool, like: int, turned_by: float, count: int, stretch: float, index: int, blocked: np.uint64, r: Reach,
+    pattern: Pattern, slots: NDArray[np.int32], s: Strings,
 ) -> tuple[int, bool]:  # fmt: skip
-    """The row with the factors of a cross-section (b, w) of `count` points, -1 where it has too many, and whether its
-    light is known.
+    """The row with the factors of the cross-section, of `count` points, of all grooves `like` this one, -1 where it has
+    too many, and whether its light is known.
 
-    lone: it is that of one groove, which stands for all `like` it; shared: and so does its light, where `index` is the
-    same.
+    shared: so it is for all of them where `index` is the same.
     """
-    key = 2.0 * like + (1.0 if turned_by > 0.0 else 0.0) if lone else -1.0
-    at = int(key) % KEPT if lone else 0
-    if not (lone and s.known[at, 0] == key and s.known[at, 1] == stretch):
+    key = 2.0 * like + (1.0 if turned_by > 0.0 else 0.0)
+    at = int(key) % KEPT
+    if s.known[at, 0] != key or s.known[at, 1] != stretch:
+        s.known[at, 0] = s.solved[at, 0] = -1.0
         if count > ELEMENTS:
             return -1, False
-        s.known[at, 0] = s.solved[at, 0] = -1.0
-        if lone:
-            place(like, turned_by, 1.0, pattern, slots, s)
-        else:
-            for i in range(count):
-                s.b[i], s.w[i] = b[i], w[i]
+        place(like, turned_by, 1.0, pattern, slots, s)
         if not cut(at, count, math.exp(stretch / STRETCHES), s):
             return -1, False
         s.known[at, 0], s.known[at, 1] = key, stretch

@@ -114,7 +114,8 @@ RANDOM = st.lists(
 def polyline(steps: list[tuple[float, float]]) -> Points:
     points = [(0.0, 0.0)]
     for step, w in steps:
-        if (points[-1][0] + step, w) != points[-1]:
+        upright = step == 0.0 and len(points) > 1 and points[-1][0] == points[-2][0]
+        if not upright and (points[-1][0] + step, w) != points[-1]:  # no wall goes back over itself
             points.append((points[-1][0] + step, w))
     return [*points, (points[-1][0] + 0.2, 0.0)]
 
