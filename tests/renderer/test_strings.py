@@ -250,9 +250,10 @@ def test_many_in_a_pixel(plate: Callable[..., Json], picture: Callable[..., Any]
              "repeat": {"type": "concentric", "count": 100, "step": -0.009}}  # fmt: skip
     for scene in (data, plain(plate, fine, [SUN, SKY], 2, groove=rings, camera={"resolution": [32, 24]})):
         ours = picture(scene, method="auto")
-        assert (ours.aovs["method"] == LINE).mean() > 0.5
+        closed = ours.aovs["method"] == LINE
+        assert closed.mean() > 0.15
         one, other = (picture(scene, method="csg", samples=400, seed=s).radiance.astype(float) for s in (1, 2))
-        as_near_as_noise(one, other, ours.radiance.astype(float), 0.002)
+        as_near_as_noise(one[closed], other[closed], ours.radiance.astype(float)[closed], 0.001)
 
 
 def test_what_is_left_to_samples(plate: Callable[..., Json], picture: Callable[..., Any]) -> None:
