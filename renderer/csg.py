@@ -194,7 +194,7 @@ def csg(
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 if bounces > 0:
                     lobe, bu, bv = strewn(i, seed, footprint.x, footprint.y)
-                    out, through = scatter(material, n_world, e, lobe, bu, bv)
+                    out, through = scatter(material, albedo, n_world, e, lobe, bu, bv)
                     if max(through[0], through[1], through[2]) > 0.0:
                         colour = follow(
                             bounces, through, out, (sx, sy, sw), i, seed, index, footprint.x, footprint.y,
@@ -243,8 +243,8 @@ def csg(
             leaving[k].through[0] /= taken
             leaving[k].through[1] /= taken
             leaving[k].through[2] /= taken
+        method[index] = CSG
         if not indirect:
-            method[index] = CSG
             radiance[index, :] = 0.0
         radiance[index, 0] += red / taken
         radiance[index, 1] += green / taken

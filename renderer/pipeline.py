@@ -344,7 +344,7 @@ def _albedo() -> Floats:
 def _frame(compiled: CompiledScene, settings: Settings, model: Truth | Textures | None = None) -> Frame:
     caster = Caster(compiled.objects, compiled.triangles, bent=settings.bounces > 0)
     width, height = compiled.resolution
-    lit = bool(compiled.lighting.sky.any()) or shading.has_picture(compiled.lighting)
+    lit = settings.bounces > 0 or bool(compiled.lighting.sky.any()) or shading.has_picture(compiled.lighting)
     return Frame(
         scene=compiled,
         settings=settings,

@@ -125,12 +125,16 @@ def mirrored(material: np.void, cosine: float) -> Vector:
 
 
 @leaf
-def scatter(material: np.void, n: Vector, e: Vector, lobe: float, u: float, v: float) -> tuple[Vector, Vector]:
+def scatter(
+    material: np.void, albedo: NDArray[np.float64], n: Vector, e: Vector, lobe: float, u: float, v: float
+) -> tuple[Vector, Vector]:
     """A direction L that `material` gets light from for E, and the weight of radiance from there, RGB.
 
     It is drawn, by three numbers from [0, 1), about as the material weighs directions: by the cosine, or by the normals
     that E sees of GGX (Heitz 2018, "Sampling the GGX distribution of visible normals"), or it is the mirror's. The
-    weight is BRDF times cosine over the density, 0 where L is below the surface; its mean is the albedo.
+    weight is BRDF times cosine over the density, 0 where L is below the surface; its mean is the albedo. What a coat
+    takes from the body's light is not what `reflect` says for each direction but its mean, as in `ambient`: with that
+    no surface gives back more than it gets. albedo: the table of `gloss_albedo`.
     """
     none = (0.0, 0.0, 0.0)
     ne = dot(n, e)
@@ -176,13 +180,26 @@ def scatter(material: np.void, n: Vector, e: Vector, lobe: float, u: float, v: f
     if nl <= 0.0:
         return l, none
     density = (1.0 - glossy) * nl / math.pi
+    h = unit((l[0] + e[0], l[1] + e[1], l[2] + e[2]))
     if alpha > 0.0:
-        h = unit((l[0] + e[0], l[1] + e[1], l[2] + e[2]))
         a2, nh = alpha * alpha, dot(n, h)
         spike = nh * nh * (a2 - 1.0) + 1.0
         density += glossy * a2 / (math.pi * spike * spike) * 0.5 / (ne + math.sqrt(ne * ne * (1.0 - a2) + a2))
     weight = reflect(material, n, e, l)
-    return l, (weight[0] / density, weight[1] / density, weight[2] / density)
+    body = 0.0
+    if metallic < 1.0 and material.f90 > 0.0:
+        taken = coat
+        if alpha > 0.0:
+            roughness = math.sqrt(alpha)
+            plain, grazing = between(albedo, ne, roughness, 0), between(albedo, ne, roughness, 1)
+            taken = material.f0 * plain + (material.f90 - material.f0) * grazing
+        there = material.f0 + (material.f90 - material.f0) * (1.0 - min(max(dot(e, h), 0.0), 1.0)) ** 5
+        body = (1.0 - metallic) * (1.0 - material.transmission) * (there - taken) * nl / math.pi
+    return l, (
+        max(weight[0] + body * base[0], 0.0) / density,
+        max(weight[1] + body * base[1], 0.0) / density,
+        max(weight[2] + body * base[2], 0.0) / density,
+    )
 
 
 @leaf

@@ -199,7 +199,20 @@ class Truth:
                 gather(lighting, materials, names, first, albedo, last, directions, pixel, weight, hits, lit, image)
                 if not last:
                     goes = go_on(
-                        materials, names, first, seed, bounce, x, y, width, pixel, number, directions, weight, hits
+                        materials,
+                        names,
+                        first,
+                        albedo,
+                        seed,
+                        bounce,
+                        x,
+                        y,
+                        width,
+                        pixel,
+                        number,
+                        directions,
+                        weight,
+                        hits,
                     )
                     which = np.flatnonzero(goes)
                     if not len(which):
@@ -614,8 +627,9 @@ def gather(
 
 @kernel
 def go_on(
-    materials: NDArray[np.void], names: Ints, first: NDArray[np.int64], seed: int, bounce: int, x: int, y: int,
-    width: int, pixel: NDArray[np.int64], number: NDArray[np.int64], directions: Floats, weight: Floats, hits: Hits,
+    materials: NDArray[np.void], names: Ints, first: NDArray[np.int64], albedo: Floats, seed: int, bounce: int, x: int,
+    y: int, width: int, pixel: NDArray[np.int64], number: NDArray[np.int64], directions: Floats, weight: Floats,
+    hits: Hits,
 ) -> Bools:  # fmt: skip
     """Which rays are followed on from what they hit; their directions and weights are made those of the next ones.
 
@@ -633,7 +647,7 @@ def go_on(
             lobe, u, v = strewn(number[k], seed, px + 0.5, py)
         else:
             lobe, u, v = drawn(number[k], bounce, seed, px, py + 0.5)
-        direction, colour = scatter(material, n, e, lobe, u, v)
+        direction, colour = scatter(material, albedo, n, e, lobe, u, v)
         if max(colour[0], colour[1], colour[2]) <= 0.0:
             continue
         goes[k] = True

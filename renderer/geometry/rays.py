@@ -122,7 +122,7 @@ def follow(
         if last:
             break
         lobe, u, v = drawn(number, left, seed, px, py)
-        way, weight = scatter(material, n, e, lobe, u, v)
+        way, weight = scatter(material, albedo, n, e, lobe, u, v)
         through = (through[0] * weight[0], through[1] * weight[1], through[2] * weight[2])
         if max(through[0], through[1], through[2]) <= 0.0:
             break

@@ -181,7 +181,7 @@ def gloss(
     total = 0.0
     for i in range(count):
         for j in range(count):
-            l, weight = shading.scatter(row[0], n, e, 0.0, (i + 0.5) / count, (j + 0.5) / count)
+            l, weight = shading.scatter(row[0], albedo, n, e, 0.0, (i + 0.5) / count, (j + 0.5) / count)
             total += weight[0] * shading.sky_from(lighting, l)[0] / count**2
     return shading.ambient(row[0], lighting, albedo, n, e)[0], total
 
