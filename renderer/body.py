@@ -75,7 +75,7 @@ def build(
 ) -> Body:  # fmt: skip
     """The body of an object, row `row` of OBJECT. Raises ValueError where it would have too many triangles.
 
-    eye (3,), lights (LIGHT) and how often its mirrors are followed say how far a plate's surroundings matter.
+    eye (3,), lights (LIGHT) and how often light is followed say how far a plate's surroundings matter.
     """
     if obj["shape"] == RECTANGLE:
         return _plate(row, obj, pattern, eye, lights, bounces)

@@ -30,7 +30,10 @@ SCENE_BODY = {"requestBody": {"required": True, "content": {"application/json": 
 PATTERN_BODY = {"requestBody": {"required": True, "content": {"application/json": {"schema": {"$ref": "#/pattern"}}}}}
 SUFFIX_OF = {kind: suffix for suffix, kind in TYPES.items()}
 _BINARY = {"schema": {"type": "string", "format": "binary"}}
-MESH_BODY = {
+FileQuery = Annotated[
+    str | None, Query(description="the file's name, for its suffix; a form's file has one", max_length=255)
+]
+FILE_BODY = {
     "requestBody": {
         "required": True,
         "content": {
@@ -285,25 +288,15 @@ async def compile_pattern(request: Request) -> CompiledPattern:
         raise ProblemError(499, "The client has gone.") from None
 
 
-@router.post("/meshes", status_code=201, openapi_extra=MESH_BODY, responses=problems(400, 413, 415, 422))
-async def upload_mesh(
-    request: Request,
-    name: Annotated[
-        str | None, Query(description="the file's name, for its suffix; a form's file has one", max_length=255)
-    ] = None,
-) -> UploadedMesh:
+@router.post("/meshes", status_code=201, openapi_extra=FILE_BODY, responses=problems(400, 413, 415, 422))
+async def upload_mesh(request: Request, name: FileQuery = None) -> UploadedMesh:
     """Takes in a mesh (OBJ, PLY, GLB), as the body itself or as the file of a form. Kept until the store is full."""
     stored, size = await _stored(request, name, SUFFIXES, "mesh")
     return UploadedMesh(id=Path(stored).stem, file=PREFIX + stored, bytes=size)
 
 
-@router.post("/envmaps", status_code=201, openapi_extra=MESH_BODY, responses=problems(400, 413, 415, 422))
-async def upload_envmap(
-    request: Request,
-    name: Annotated[
-        str | None, Query(description="the file's name, for its suffix; a form's file has one", max_length=255)
-    ] = None,
-) -> UploadedEnvmap:
+@router.post("/envmaps", status_code=201, openapi_extra=FILE_BODY, responses=problems(400, 413, 415, 422))
+async def upload_envmap(request: Request, name: FileQuery = None) -> UploadedEnvmap:
     """Takes in a picture of the sky (EXR, HDR, PNG), as `/meshes` does a mesh, and keeps it beside those."""
     stored, size = await _stored(request, name, SKY_SUFFIXES, "picture")
     return UploadedEnvmap(id=Path(stored).stem, file=PREFIX + stored, bytes=size)
