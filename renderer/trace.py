@@ -1,11 +1,11 @@
 """Method `geometry`: real geometry, traced by Embree with n stratified samples a pixel, each a ray of its own.
 
-The ground truth and the peer of the analytic methods: it shares no geometry with them, no footprints, frames or
-spans. Paths go on by directions drawn as the materials answer, as often as the scene says. Embree's single precision is
-finest where a body fills [-1, 1], so each is traced in a space of its own; what Embree finds is met again in double precision. Rays
-from a surface start OFFSET off their triangle. Too small an offset makes facets shade themselves, too large a one lets
-light leak under ridges: the part of a groove's width that is wrongly lit at a shadow's edge is about OFFSET over that
-width, which for a groove of 1/250 of the body is 1e-4.
+The ground truth and the peer of the analytic methods: it shares no geometry with them, no footprints, frames or spans.
+Paths go on by directions drawn as the materials answer, as often as the scene says. Embree's single precision is finest
+where a body fills [-1, 1], so each is traced in a space of its own; what Embree finds is met again in double precision.
+Rays from a surface start OFFSET off their triangle. Too small an offset makes facets shade themselves, too large a one
+lets light leak under ridges: the part of a groove's width that is wrongly lit at a shadow's edge is about OFFSET over
+that width, which for a groove of 1/250 of the body is 1e-4.
 
 Normals are not those of the chords: facets swept along an arc have the arc's, and pattern space is carried into the
 world by the map's derivatives at the very point.
