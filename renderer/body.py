@@ -63,6 +63,7 @@ class Body:
     bend: Floats  # (m, 4) as SolidMesh
     cell: Ints  # (m,) the mesh's triangle, for other curved shapes not negative; -1: a cap of a cylinder
     base: Base
+    clear: bool  # light goes on inside
     bytes: int  # memory of the mesh alone, as a tracer needs it: single precision, shared corners
 
 
@@ -110,7 +111,7 @@ def _plate(row: int, obj: np.void, pattern: Pattern, eye: Floats, lights: NDArra
         size = 12 * (len(made.vertices) + len(made.triangles))
     return Body(
         row, RECTANGLE, origin, axes, window, corners, normals, corners, slot, bend, np.zeros(len(slot), np.int32),
-        _NO_BASE, size,
+        _NO_BASE, bool(obj["clear"]), size,
     )  # fmt: skip
 
 
@@ -154,7 +155,8 @@ def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Bo
             coordinates = np.tile([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], (count, 1, 1))
             return Body(
                 row, shape, origin, axes, window, base.corners, np.tile([0.0, 0.0, 1.0], (count, 1)), coordinates,
-                np.full(count, -1, np.int32), np.zeros((count, 4)), np.arange(count, dtype=np.int32), base, 18 * count,
+                np.full(count, -1, np.int32), np.zeros((count, 4)), np.arange(count, dtype=np.int32), base,
+                bool(obj["clear"]), 18 * count,
             )  # fmt: skip
     flat, slot, bend = sheet(pattern, window)
     coordinates, source, cell = cut(base, flat, CELL, LIMIT)
@@ -170,7 +172,8 @@ def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Bo
         bend, cell = np.concatenate([bend, np.zeros((len(caps), 4))]), np.concatenate([cell, np.full(len(caps), -1)])
     return Body(
         row, shape, origin, axes, window, np.ascontiguousarray(corners), np.ascontiguousarray(normals),
-        np.ascontiguousarray(coordinates), slot, bend, cell.astype(np.int32), base, 18 * len(corners),
+        np.ascontiguousarray(coordinates), slot, bend, cell.astype(np.int32), base, bool(obj["clear"]),
+        18 * len(corners),
     )  # fmt: skip
 
 

@@ -13,12 +13,40 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.query import nearby
+from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.rays import LEVEL, follow
 from renderer.geometry.solid import leveled, thin_of
 from renderer.geometry.spans import events
 from renderer.kernel import borrow, keep, kernel
-from renderer.shading import direction_to_pattern, sky_from
-from renderer.tables import BARE, MESH, RAY, Floats, Ints, Lighting, Pattern
+from renderer.shading import direction_to_pattern, sky_from, unit
+from renderer.tables import BARE, MESH, RAY, RECTANGLE, Camera, Floats, Ints, Lighting, Pattern
+
+
+@kernel
+def look(
+    across: int, down: int, bounces: int, seed: int, footprints: NDArray[np.void], chosen: NDArray[np.int64],
+    camera: Camera, rays: NDArray[np.void],
+) -> None:  # fmt: skip
+    """The RAYs of the camera through the footprints `chosen` (n,), each in across by down strata: (n * across * down,).
+
+    bounces: as many as are followed from what they meet.
+    """
+    each = across * down
+    for j in range(len(chosen)):
+        footprint = footprints[chosen[j]]
+        state = seed_of(seed, footprint.x, footprint.y)
+        for i in range(each):
+            state, ju = jitter(state)
+            state, jv = jitter(state)
+            x = footprint.x + footprint.size * (i % across + ju) / across
+            y = footprint.y + footprint.size * (i // across + jv) / down
+            ray = rays[j * each + i]
+            for c in range(3):
+                ray.origin[c], ray.through[c] = camera.origin[c], 1.0 / each
+                ray.way[c] = camera.corner[c] + x * camera.right[c] + y * camera.down[c]
+            way = unit((ray.way[0], ray.way[1], ray.way[2]))
+            ray.way[0], ray.way[1], ray.way[2] = way
+            ray.footprint, ray.number, ray.bounces, ray.object = chosen[j], i, bounces + 1, -1
 
 
 @kernel
@@ -46,18 +74,19 @@ def meet_surface(
     found, spans = borrow(owned[0]), borrow(owned[1])
     pattern, lighting, materials, slots = borrow(pattern), borrow(lighting), borrow(materials), borrow(slots)
     albedo, leaving = borrow(albedo), borrow(leaving)
-    top = pattern.height + thin_of(pattern)
+    high, low = pattern.height + thin_of(pattern), -pattern.depth - thin_of(pattern)
     for k in chosen:
         ray, frame = rays[k], frames[k]
         footprint = footprints[ray.footprint]
         way = (ray.way[0], ray.way[1], ray.way[2])
         d = direction_to_pattern(frame, way)
         rise = leveled(d[0], d[1], d[2], LEVEL)
-        start = (frame.pq[0] + top * d[0] / rise, frame.pq[1] + top * d[1] / rise, top)
+        w = low if frame.within == 1 else high
+        start = (frame.pq[0] + w * d[0] / rise, frame.pq[1] + w * d[1] / rise, w)
         colour = follow(
-            ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, ray.number, seed, ray.footprint,
-            footprint.x, footprint.y, blocked[k], pattern, frame, lighting, materials, slots, albedo, found, spans,
-            leaving, gone,
+            ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, frame.within == 1, ray.number,
+            seed, ray.footprint, footprint.x, footprint.y, blocked[k], pattern, frame, lighting, materials, slots,
+            albedo, found, spans, leaving, gone,
         )  # fmt: skip
         for c in range(3):
             radiance[ray.footprint, c] += colour[c]
@@ -95,7 +124,10 @@ def meet(
     """
     while len(rays):
         own = rays["object"].astype(np.int32)
-        ahead = np.where(shapes.objects["shape"][own] == MESH, rays["clear"] + shapes.start, 0.0)  # it may meet itself
+        shape, within = np.where(own >= 0, shapes.objects["shape"][own], RECTANGLE), rays["within"] != 0
+        again = (shape == MESH) | within & (shape != RECTANGLE)  # it may meet itself
+        ahead = np.where(again, rays["clear"], 0.0) + np.where(shape == MESH, shapes.start, 0.0)
+        own[within] = -2 - own[within]
         way = np.ascontiguousarray(rays["way"])
         origin = rays["origin"] + ahead[:, None] * way
         hits = shapes.hits(origin, way, own)

@@ -21,13 +21,13 @@ from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_
 from renderer.geometry.spans import events
 from renderer.geometry.view import on_plane, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
+from renderer.scattering import scatter
 from renderer.shading import (
     ambient,
     dot,
     light_to_pattern,
     lit_by,
     normal_to_world,
-    scatter,
     to_world,
     unit,
     white,
@@ -194,10 +194,13 @@ def csg(
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 if bounces > 0:
                     lobe, bu, bv = strewn(i, seed, footprint.x, footprint.y)
-                    out, through = scatter(material, albedo, n_world, e, lobe, bu, bv)
+                    out, through = scatter(material, albedo, n_world, e, lobe, bu, bv, False)
                     if max(through[0], through[1], through[2]) > 0.0:
+                        within = dot(n_world, out) < 0.0
+                        if within:
+                            sx, sy, sw = sx - 2.0 * off * n[0], sy - 2.0 * off * n[1], sw - 2.0 * off * n[2]
                         colour = follow(
-                            bounces, through, out, (sx, sy, sw), i, seed, index, footprint.x, footprint.y,
+                            bounces, through, out, (sx, sy, sw), within, i, seed, index, footprint.x, footprint.y,
                             footprint.blocked, pattern, frame, lighting, materials, slots, albedo, around, spans,
                             leaving, gone,
                         )  # fmt: skip

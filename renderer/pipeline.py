@@ -32,7 +32,7 @@ from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
-from renderer.tables import BARE, BASE, NOT_MINE, RAY, Floats, Lighting, Pattern
+from renderer.tables import BARE, BASE, CSG, NOT_MINE, RAY, Floats, Lighting, Pattern
 from renderer.trace import Truth
 
 TILE = 64  # pixels
@@ -125,12 +125,14 @@ class Frame:
         of = seen.frames["object"][seen.footprints["frame"]]
         grooved = seen.frames["grooved"][seen.footprints["frame"]] != 0
         spent: dict[str, float] = {}
-        for row in np.unique(of):
+        within = seen.frames["within"][seen.footprints["frame"]] != 0
+        self._look_out(seen, np.flatnonzero(within), radiance, method, spent)
+        for row in np.unique(of[~within]):
             index = scene.objects["pattern"][row]
             carries = grooved & (index >= 0) & (settings.method != "base")
             for pattern, chosen in (
-                (BARE, np.flatnonzero((of == row) & ~carries)),
-                (scene.patterns[index] if index >= 0 else BARE, np.flatnonzero((of == row) & carries)),
+                (BARE, np.flatnonzero((of == row) & ~carries & ~within)),
+                (scene.patterns[index] if index >= 0 else BARE, np.flatnonzero((of == row) & carries & ~within)),
             ):
                 if len(chosen):
                     self._shade(row, pattern, seen, chosen, radiance, method, spent)
@@ -140,6 +142,16 @@ class Frame:
         )  # fmt: skip
         self._put(tile, image, methods)
         return spent | {"cast": cast - begin, "film": clock() - start}
+
+    @property
+    def rays_go_on(self) -> bool:
+        """Whether rays that have left a surface may meet one."""
+        return self.caster.shadows or bool(self.scene.objects["clear"].any())
+
+    def _strata(self) -> tuple[int, int]:
+        """Of a footprint's samples, across and down."""
+        across = math.ceil(math.sqrt(self.settings.samples))
+        return across, math.ceil(self.settings.samples / across)
 
     def _put(self, tile: Tile, image: Floats, methods: NDArray[np.uint8]) -> None:
         rows, columns = slice(tile.y, tile.y + tile.height), slice(tile.x, tile.x + tile.width)
@@ -165,7 +177,7 @@ class Frame:
         if settings.method == "csg":
             self._sample(part, chosen, 0.0)
             return
-        if not self.caster.shadows:
+        if not self.rays_go_on:
             start = time.perf_counter()
             line(MODES.get(settings.method, LOOSE), settings.bounces, pattern, seen.footprints, chosen, *self._of(part))
             part.took("line", start)
@@ -182,6 +194,31 @@ class Frame:
         return (
             part.seen.frames, scene.camera, part.lighting, scene.materials, scene.slots[part.row], self.albedo,
             part.radiance, part.method,
+        )  # fmt: skip
+
+    def _look_out(
+        self, seen: Footprints, chosen: NDArray[np.int64], radiance: Floats, method: NDArray[np.uint8],
+        spent: dict[str, float],
+    ) -> None:  # fmt: skip
+        """Shade the footprints `chosen` of clear bodies that the camera sees from within."""
+        scene, settings = self.scene, self.settings
+        start = time.perf_counter()
+        method[chosen] = CSG
+        across, down = self._strata()
+        batch = max(RAYS // (across * down), 1)
+        for first in range(0, len(chosen), batch):
+            some = chosen[first : first + batch]
+            rays = np.zeros(len(some) * across * down, RAY)
+            bounce.look(across, down, settings.bounces, settings.seed, seen.footprints, some, scene.camera, rays)
+            self._meet(rays, seen.footprints, radiance)
+        spent["bounce"] = spent.get("bounce", 0.0) + time.perf_counter() - start
+
+    def _meet(self, rays: NDArray[np.void], footprints: NDArray[np.void], radiance: Floats) -> None:
+        """Add what RAYs see to their footprints' radiance."""
+        scene = self.scene
+        bounce.meet(
+            rays, self.caster, scene.patterns, scene.slots, self.settings.seed, footprints, scene.lighting,
+            scene.materials, self.albedo, radiance,
         )  # fmt: skip
 
     def _direct(self, part: Part, chosen: NDArray[np.int64]) -> None:
@@ -238,11 +275,10 @@ class Frame:
 
         indirect: add what these bring to what is there.
         """
-        scene, settings = self.scene, self.settings
+        settings = self.settings
         each, batch = 0, len(chosen)
-        if self.caster.shadows:
-            columns = math.ceil(math.sqrt(settings.samples))
-            each, tolerance = columns * math.ceil(settings.samples / columns), 0.0
+        if self.rays_go_on:
+            each, tolerance = math.prod(self._strata()), 0.0
             batch = max(RAYS // each, 1)
         for first in range(0, len(chosen), batch):
             start = time.perf_counter()
@@ -254,10 +290,7 @@ class Frame:
             )  # fmt: skip
             part.took("csg", start)
             start = time.perf_counter()
-            bounce.meet(
-                leaving[: gone[0]], self.caster, scene.patterns, scene.slots, settings.seed, part.seen.footprints,
-                scene.lighting, scene.materials, self.albedo, part.radiance,
-            )  # fmt: skip
+            self._meet(leaving[: gone[0]], part.seen.footprints, part.radiance)
             part.took("bounce", start)
 
 

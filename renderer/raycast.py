@@ -50,7 +50,7 @@ class Caster:
     def hits(self, origin: Floats, directions: Floats, own: Ints | None = None) -> NDArray[np.void]:
         """The nearest HIT (n,) of each ray from `origin` (3,) or (n, 3) along `directions` (n, 3).
 
-        own: (n,) the row of OBJECT that each ray leaves and, if it is no mesh, does not meet again.
+        own: (n,) as `shapes.cast`: of OBJECT the row that each ray leaves and, if it is no mesh, does not meet again.
         """
         hits = np.zeros(len(directions), HIT)
         origins = np.ascontiguousarray(np.broadcast_to(origin, directions.shape))

@@ -189,7 +189,7 @@ MATERIAL = np.dtype(
         ("metallic", "f8"),
         ("alpha", "f8"),  # roughness squared; 0: ideal, no response to direct light
         ("f0", "f8"), ("f90", "f8"),  # Fresnel reflectance of the dielectric, head on and grazing
-        ("transmission", "f8"),
+        ("transmission", "f8"), ("ior", "f8"),
     ]
 )  # fmt: skip
 
@@ -215,6 +215,7 @@ OBJECT = np.dtype(
         ("mapping", "f8", (4,)),  # pattern = uv * (m0, m1) + (m2, m3)
         ("material", "i4"),  # row of MATERIAL
         ("pattern", "i4"),  # index of the scene's compiled patterns; -1: bare
+        ("clear", "i4"),  # 1: a material of its surface lets light into the body
     ]
 )
 
@@ -231,7 +232,8 @@ HIT = np.dtype(
 FRAME = np.dtype(
     [
         ("object", "i4"),
-        ("grooved", "i4"),  # 0: the back of a surface or a cylinder's cap, which carry no pattern
+        ("grooved", "i4"),  # 0: a cylinder's cap or the back of an opaque surface, which carry no pattern
+        ("within", "i4"),  # 1: seen from within a clear body, from below; the back of an opaque surface is turned round
         ("origin", "f8", (3,)),  # a point of the surface, world
         ("pq", "f8", (2,)),  # its pattern coordinates
         ("axes", "f8", (3, 3)),  # columns: dP/dp, dP/dq, sigma N: world units a pattern unit
@@ -270,11 +272,12 @@ RAY = np.dtype(
         ("footprint", "i8"),  # index
         ("number", "i8"),  # of the footprint's samples
         ("bounces", "i4"),  # that are left, the one on what it meets counted
-        ("object", "i4"),  # row of OBJECT that it leaves
+        ("object", "i4"),  # row of OBJECT that it leaves; -1: the camera's
+        ("within", "i4"),  # 1: it goes on inside that object's body
         ("clear", "f8"),  # how far it goes before it has left the groove it comes from, world units
     ]
 )  # fmt: skip
-"""A ray that has left an object's surface for the rest of the scene."""
+"""A ray that has left an object's surface for the rest of the scene, or for the inside of its body."""
 
 
 GLOSS_LEVELS = 8

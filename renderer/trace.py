@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 from renderer.body import Base, Body, facing
 from renderer.geometry.random import drawn, jitter, seed_of, strewn
 from renderer.kernel import borrow, kernel, leaf
-from renderer.shading import Vector, ambient, dot, lit_by, scatter, sky_from, unit
+from renderer.scattering import scatter
+from renderer.shading import Vector, ambient, dot, lit_by, sky_from, unit
 from renderer.tables import CYLINDER, GEOMETRY, MESH, NONE, POINT, RECTANGLE, Camera, Floats, Ints, Lighting
 
 OFFSET = 4e-7
@@ -39,7 +40,8 @@ class Hits(NamedTuple):
     t: Floats  # (n,) in lengths of the direction; inf: nothing
     body: Ints  # (n,) index of the truth's bodies; -1: nothing
     triangle: Ints  # (n,) of the body; -1: the plane of a bare rectangle
-    back: Bools  # (n,) seen from behind: bare, and turned to the viewer
+    back: Bools  # (n,) seen from behind: what is opaque is bare there, and turned to the viewer. Of rays' starts: they
+    # leave that side
     point: Floats  # (n, 3) world
     normal: Floats  # (n, 3) world, unit: what light meets
     slot: Ints  # (n,) material slot: -1 the object's own
@@ -60,6 +62,7 @@ class Traced:
         self.body = body
         self.dual: Floats = np.asarray(np.linalg.inv(body.axes), np.float64)
         self.top = 0.0
+        self.floor, self.under = -math.inf, 0.0  # a plate's bottom, as traced; a height between that and all else
         self._scene: EmbreeScene | None = None
         if len(body.corners):
             low, high = body.corners.min(axis=(0, 1)), body.corners.max(axis=(0, 1))
@@ -70,6 +73,10 @@ class Traced:
             self.top = float(high[2])
             self.corners = np.ascontiguousarray((body.corners - self.middle) * self.scale)
             self.normals = body.normals if body.shape == RECTANGLE else facing(self.corners)
+            if body.shape == RECTANGLE:
+                self.floor = float(self.corners[..., 2].min())
+                heights = body.corners[..., 2]
+                self.under = 0.5 * float(heights.min() + heights[heights > heights.min()].min())
             self._scene = EmbreeScene(robust=True)
             TriangleMesh(self._scene, self.corners.astype(np.float32))
 
@@ -80,13 +87,13 @@ class Traced:
         which = np.arange(len(directions))
         if body.shape == RECTANGLE:
             cross_window(index, body.window, body.origin, self.dual, start, directions, hits)
-            which = np.flatnonzero(own & ~start.back)  # from one place of its grooves to another
+            which = np.flatnonzero(own & (body.clear | ~start.back))  # from one place of its grooves to another
         if self._scene is not None and len(which):
             origins, inside, _ = self._leave(start, directions[which], np.inf, which, own[which])
             row = self._first(origins.astype(np.float32), inside)
             meet_triangles(
-                index, body.shape == RECTANGLE, which, body.origin, self.dual, self.corners, self.normals, self.middle,
-                self.scale, row, start.point, directions, hits,
+                index, body.shape == RECTANGLE, self.floor, which, body.origin, self.dual, self.corners, self.normals,
+                self.middle, self.scale, row, start, directions, hits,
             )  # fmt: skip
 
     def resolve(self, index: int, start: Hits, directions: Floats, hits: Hits) -> None:
@@ -96,18 +103,23 @@ class Traced:
         if body.shape != RECTANGLE:
             place_on_shell(
                 which, body.origin, body.axes, self.corners, self.normals, self.middle, self.scale, body.normals,
-                body.coordinates, body.slot, body.bend, body.cell, body.base, start.point, directions, hits,
+                body.coordinates, body.slot, body.bend, body.cell, body.base, body.clear, start.point, directions, hits,
             )  # fmt: skip
             return
-        bare = hits.back[which] | (self._scene is None)
+        bare = (hits.back[which] & (not body.clear)) | (self._scene is None)
         place_on_plane(which[bare], body.axes, start.point, directions, hits)
         for own in (False, True):
             part = which[~bare & ((start.body[which] == index) == own)]
             if not len(part):
                 continue
             origins, inside = np.empty((len(part), 3)), np.empty((len(part), 3))
-            top = math.inf if own else max(self.top, 0.0) + 1e-3 / self.scale
-            shoot(part, body.origin, self.dual, top, self.middle, self.scale, start.point, directions, origins, inside)
+            top, under = max(self.top, 0.0) + 1e-3 / self.scale, self.under
+            if own:
+                top, under = math.inf, -math.inf
+            shoot(
+                part, body.origin, self.dual, top, under, self.middle, self.scale, start.point, directions, origins,
+                inside,
+            )  # fmt: skip
             row = hits.triangle[part] if own else self._first(origins.astype(np.float32), inside)
             place_on_plate(
                 part, body.origin, body.axes, self.dual, self.corners, self.normals, self.middle, self.scale, body.slot,
@@ -177,6 +189,7 @@ class Truth:
         each = columns * rows
         names = np.concatenate(slots) if slots else np.zeros(0, np.int32)
         first = np.cumsum([0, *(len(slot) for slot in slots)])[[traced.body.row for traced in self.bodies]]
+        clear = np.array([traced.body.clear for traced in self.bodies] + [False])
         batch = max(RAYS // each, 1)
         for begin in range(0, width * height, batch):
             stop = min(begin + batch, width * height)
@@ -196,24 +209,15 @@ class Truth:
                 for row, light in enumerate(lighting.lights):
                     lit[row] = self._lit(light, hits)
                 last = bounce == bounces
-                gather(lighting, materials, names, first, albedo, last, directions, pixel, weight, hits, lit, image)
+                within = hits.back & clear[hits.body]
+                gather(
+                    lighting, materials, names, first, albedo, last, directions, pixel, weight, within, hits, lit, image
+                )
                 if not last:
                     goes = go_on(
-                        materials,
-                        names,
-                        first,
-                        albedo,
-                        seed,
-                        bounce,
-                        x,
-                        y,
-                        width,
-                        pixel,
-                        number,
-                        directions,
-                        weight,
-                        hits,
-                    )
+                        materials, names, first, albedo, seed, bounce, x, y, width, pixel, number, within, directions,
+                        weight, hits,
+                    )  # fmt: skip
                     which = np.flatnonzero(goes)
                     if not len(which):
                         break
@@ -317,24 +321,30 @@ def reached(n: Floats, corner: Floats, origin: Floats, direction: Vector) -> flo
 
 @kernel
 def meet_triangles(
-    index: int, plate: bool, which: NDArray[np.int64], place: Floats, dual: Floats, corners: Floats, normals: Floats,
-    middle: Floats, scale: float, row: Ints, points: Floats, directions: Floats, hits: Hits,
+    index: int, plate: bool, floor: float, which: NDArray[np.int64], place: Floats, dual: Floats, corners: Floats,
+    normals: Floats, middle: Floats, scale: float, row: Ints, start: Hits, directions: Floats, hits: Hits,
 ) -> None:  # fmt: skip
-    """The triangles `row` that Embree found for the rays `which`, where they are nearer than what the rays have met."""
+    """The triangles `row` that Embree found for the rays `which`, where they are nearer than what the rays have met.
+
+    Of a plate only the side that a ray comes from, and not the bottom, at the height `floor`.
+    """
     x = np.empty(3)
     for j in range(len(which)):
         if row[j] < 0:
             continue
         k = which[j]
-        at = points[k]
+        corner = corners[row[j]]
+        if plate and corner[0, 2] == floor and corner[1, 2] == floor and corner[2, 2] == floor:
+            continue
+        at = start.point[k]
         inside = turned(dual, (at[0] - place[0], at[1] - place[1], at[2] - place[2]))
         for c in range(3):
             x[c] = (inside[c] - middle[c]) * scale
         d = turned(dual, (directions[k, 0], directions[k, 1], directions[k, 2]))
         n = normals[row[j]]
         back = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0
-        t = reached(n, corners[row[j], 0], x, d) / scale
-        if 0.0 < t < hits.t[k] and not (plate and back):
+        t = reached(n, corner[0], x, d) / scale
+        if 0.0 < t < hits.t[k] and not (plate and back != start.back[k]):
             hits.t[k], hits.body[k], hits.triangle[k], hits.back[k] = t, index, row[j], back
 
 
@@ -351,16 +361,17 @@ def place_on_plane(which: NDArray[np.int64], axes: Floats, points: Floats, direc
 
 @kernel
 def shoot(
-    which: NDArray[np.int64], place: Floats, dual: Floats, top: float, middle: Floats, scale: float, points: Floats,
-    directions: Floats, origins: Floats, inside: Floats,
+    which: NDArray[np.int64], place: Floats, dual: Floats, top: float, under: float, middle: Floats, scale: float,
+    points: Floats, directions: Floats, origins: Floats, inside: Floats,
 ) -> None:  # fmt: skip
-    """Rays for a plate's solid, where it is traced, from no higher than `top`; directions are unit vectors."""
+    """Rays for a plate's solid, where it is traced, from no higher than `top`, or no lower than `under` on their way
+    up; directions are unit vectors."""
     for j in range(len(which)):
         k = which[j]
         at = points[k]
         eye = turned(dual, (at[0] - place[0], at[1] - place[1], at[2] - place[2]))
         d = turned(dual, (directions[k, 0], directions[k, 1], directions[k, 2]))
-        t = max((top - eye[2]) / d[2], 0.0) if d[2] < 0.0 else 0.0
+        t = max(((top if d[2] < 0.0 else under) - eye[2]) / d[2], 0.0) if d[2] != 0.0 else 0.0
         length = math.sqrt(dot(d, d))
         for c in range(3):
             origins[j, c] = (eye[c] + t * d[c] - middle[c]) * scale
@@ -404,6 +415,8 @@ def place_on_plate(
         else:
             for c in range(3):
                 hits.point[k, c] = points[k, c] + hits.t[k] * directions[k, c]
+        if hits.back[k]:
+            n = (-n[0], -n[1], -n[2])
         world = unit(
             (
                 n[0] * dual[0, 0] + n[1] * dual[1, 0] + n[2] * dual[2, 0],
@@ -501,9 +514,9 @@ def on_mesh(base: Base, cell: int, normal: Floats, bend: Floats, v: float, w: fl
 def place_on_shell(
     which: NDArray[np.int64], place: Floats, axes: Floats, corners: Floats, normals: Floats, middle: Floats,
     scale: float, patterned: Floats, coordinates: Floats, slot: Ints, bend: Floats, cell: Ints, base: Base,
-    points: Floats, directions: Floats, hits: Hits,
+    clear: bool, points: Floats, directions: Floats, hits: Hits,
 ) -> None:  # fmt: skip
-    """The hits on a curved body. Seen from behind a surface is bare."""
+    """The hits on a curved body. Seen from behind an opaque surface is bare."""
     bare, straight = np.array([0.0, 0.0, 1.0]), np.zeros(4)
     for k in which:
         row = hits.triangle[k]
@@ -538,8 +551,8 @@ def place_on_shell(
             p = y[0, 0] + v * (y[1, 0] - y[0, 0]) + w * (y[2, 0] - y[0, 0])
             q = y[0, 1] + v * (y[1, 1] - y[0, 1]) + w * (y[2, 1] - y[0, 1])
             h = y[0, 2] + v * (y[1, 2] - y[0, 2]) + w * (y[2, 2] - y[0, 2])
-            facet = bare if hits.back[k] else patterned[row]
-            arc = straight if hits.back[k] else bend[row]
+            shown = clear or not hits.back[k]
+            facet, arc = patterned[row] if shown else bare, bend[row] if shown else straight
             if base.shape == MESH:
                 smooth = on_mesh(base, cell[row], facet, arc, p, q, h)
                 d = (directions[k, 0], directions[k, 1], directions[k, 2])
@@ -547,10 +560,8 @@ def place_on_shell(
                     n = smooth
             else:
                 n = on_quadric(base, facet, arc, p, q, h)
-        sign = 1.0
-        if hits.back[k]:
-            sign = -1.0
-        else:
+        sign = -1.0 if hits.back[k] else 1.0
+        if clear or not hits.back[k]:
             hits.slot[k] = slot[row]
         for c in range(3):
             hits.normal[k, c] = sign * (axes[c, 0] * n[0] + axes[c, 1] * n[1] + axes[c, 2] * n[2])
@@ -597,11 +608,12 @@ def leave(
 @kernel
 def gather(
     lighting: Lighting, materials: NDArray[np.void], names: Ints, first: NDArray[np.int64], albedo: Floats, last: bool,
-    directions: Floats, pixel: NDArray[np.int64], weight: Floats, hits: Hits, lit: Bools, image: Floats,
+    directions: Floats, pixel: NDArray[np.int64], weight: Floats, within: Bools, hits: Hits, lit: Bools, image: Floats,
 ) -> None:  # fmt: skip
     """Add what the rays see to their pixels. names: material rows of all bodies, each from `first` on.
 
-    The last time surfaces are lit by all of the sky; before that rays go on to find what they see of it.
+    The last time surfaces are lit by all of the sky; before that rays go on to find what they see of it. From `within`
+    clear bodies (n,) surfaces show no light but their own.
     """
     lighting = borrow(lighting)
     lights = lighting.lights
@@ -614,9 +626,9 @@ def gather(
             e = unit((-directions[k, 0], -directions[k, 1], -directions[k, 2]))
             material = materials[names[first[hits.body[k]] + hits.slot[k] + 1]]
             red, green, blue = material.emissive[0], material.emissive[1], material.emissive[2]
-            if last:
+            if last and not within[k]:
                 red, green, blue = ambient(material, lighting, albedo, n, e)
-            for l in range(len(lights)):
+            for l in range(0 if within[k] else len(lights)):
                 if lit[l, k]:
                     colour = lit_by(lights[l], material, n, e, at)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
@@ -628,8 +640,8 @@ def gather(
 @kernel
 def go_on(
     materials: NDArray[np.void], names: Ints, first: NDArray[np.int64], albedo: Floats, seed: int, bounce: int, x: int,
-    y: int, width: int, pixel: NDArray[np.int64], number: NDArray[np.int64], directions: Floats, weight: Floats,
-    hits: Hits,
+    y: int, width: int, pixel: NDArray[np.int64], number: NDArray[np.int64], within: Bools, directions: Floats,
+    weight: Floats, hits: Hits,
 ) -> Bools:  # fmt: skip
     """Which rays are followed on from what they hit; their directions and weights are made those of the next ones.
 
@@ -647,10 +659,12 @@ def go_on(
             lobe, u, v = strewn(number[k], seed, px + 0.5, py)
         else:
             lobe, u, v = drawn(number[k], bounce, seed, px, py + 0.5)
-        direction, colour = scatter(material, albedo, n, e, lobe, u, v)
+        direction, colour = scatter(material, albedo, n, e, lobe, u, v, within[k])
         if max(colour[0], colour[1], colour[2]) <= 0.0:
             continue
         goes[k] = True
+        if dot(n, direction) < 0.0:
+            hits.back[k] = not hits.back[k]
         for c in range(3):
             directions[k, c] = direction[c]
             weight[k, c] *= colour[c]

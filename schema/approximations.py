@@ -72,12 +72,12 @@ def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> f
 
 
 def left_out(scene: Scene) -> Iterator[Problem]:
-    """What the renderer does not do yet."""
+    """What is not seen in this scene."""
     for name in sorted(_used_materials(scene)):
         material = scene.materials[name]
-        if material.transmission > 0 and material.metallic < 1:
-            found = f"{material.transmission:g}: refraction is not followed yet, left out"
-            yield _warning(("materials", name, "transmission"), "0", found)
+        if scene.render.bounces == 0 and material.transmission > 0 and material.metallic < 1:
+            found = f"{material.transmission:g}: refraction is seen by bounces alone, and there are none"
+            yield _warning(("materials", name, "transmission"), "0, as render.bounces is 0", found)
         if scene.render.bounces == 0 and material.roughness == 0 and _has_mirror(material):
             found = "0: an ideal mirror is seen by bounces alone, and there are none"
             yield _warning(("materials", name, "roughness"), "more than 0, as render.bounces is 0", found)

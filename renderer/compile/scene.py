@@ -98,12 +98,16 @@ def compile_scene(
             obj["pattern"] = next(i for i, table in enumerate(tables) if table is kept.tables)
             slot += [names[name] for name in kept.materials]
         slots.append(np.array(slot, np.int32))
+    materials = np.concatenate([_material(material) for material in scene.materials.values()])
+    clear = (1.0 - materials["metallic"]) * materials["transmission"] > 0.0
+    for row, rows in enumerate(slots):
+        objects[row]["clear"] = clear[rows].any()
     return CompiledScene(
         camera=_camera(scene.camera, resolution),
         resolution=resolution,
         objects=objects,
         triangles=_triangles(objects, soups),
-        materials=np.concatenate([_material(material) for material in scene.materials.values()]),
+        materials=materials,
         lighting=_lighting(scene.lights, meshes),
         patterns=tuple(tables),
         slots=tuple(slots),
@@ -174,7 +178,7 @@ def _material(material: schema.Material) -> NDArray[np.void]:
     """The row of MATERIAL (1,), as glTF 2.0 with KHR_materials_specular and _ior has it."""
     row = np.zeros(1, MATERIAL)
     row["base_color"], row["emissive"] = material.base_color, material.emissive
-    row["metallic"], row["transmission"] = material.metallic, material.transmission
+    row["metallic"], row["transmission"], row["ior"] = material.metallic, material.transmission, material.ior
     row["alpha"] = material.roughness**2
     row["f0"] = material.specular * ((material.ior - 1.0) / (material.ior + 1.0)) ** 2
     row["f90"] = material.specular

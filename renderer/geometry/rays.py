@@ -7,11 +7,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.curve import is_curved, turned
 from renderer.geometry.query import Nearby
 from renderer.geometry.random import drawn
 from renderer.geometry.solid import (
     DOWN,
     OPEN,
+    RISE,
+    SINK,
     UP,
     Meeting,
     leveled,
@@ -24,14 +27,15 @@ from renderer.geometry.solid import (
 )
 from renderer.geometry.spans import Events
 from renderer.kernel import callee
+from renderer.scattering import scatter
 from renderer.shading import (
     Vector,
     ambient,
     direction_to_pattern,
+    dot,
     light_to_pattern,
     lit_by,
     normal_to_world,
-    scatter,
     sky_from,
     to_world,
 )
@@ -54,39 +58,42 @@ def meet_far(
 
 @callee
 def follow(
-    bounces: int, through: Vector, way: Vector, start: Vector, number: int, seed: int, index: int, px: float, py: float,
-    blocked: np.uint64, pattern: Pattern, frame: np.void, lighting: Lighting, materials: NDArray[np.void],
-    slots: NDArray[np.int32], albedo: Floats, found: Nearby, spans: Events, leaving: NDArray[np.void],
-    gone: NDArray[np.int64],
+    bounces: int, through: Vector, way: Vector, start: Vector, within: bool, number: int, seed: int, index: int,
+    px: float, py: float, blocked: np.uint64, pattern: Pattern, frame: np.void, lighting: Lighting,
+    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, found: Nearby, spans: Events,
+    leaving: NDArray[np.void], gone: NDArray[np.int64],
 ) -> Vector:  # fmt: skip
     """What comes back along the ray that leaves `start` (off the surface, pattern space) by `way` (unit, world), times
     `through`, RGB: the light of what it meets, and of what the rays from there meet, up to so many `bounces`.
 
-    Each of a footprint's samples, of that number, draws its own rays; (px, py) is the footprint's place on the screen.
-    Where the last one meets the surface, that is lit by all of the sky. A ray that leaves the surface meets the sky, or
-    becomes the RAY `leaving[gone[0]]` of footprint `index`, where there is room for any.
+    within: it is inside the body. Each of a footprint's samples, of that number, draws its own rays; (px, py) is the
+    footprint's place on the screen. Where the last one meets the surface, that is lit by all of the sky; from within
+    it shows no light but its own. A ray that leaves the surface meets the sky, or becomes the RAY `leaving[gone[0]]` of
+    footprint `index`, where there is room for any.
     """
-    lights = lighting.lights
+    lights, curved = lighting.lights, is_curved(frame)
     red = green = blue = 0.0
     x, y, w = start
     for left in range(bounces, 0, -1):
         d = direction_to_pattern(frame, way)
         rise = leveled(d[0], d[1], d[2], LEVEL)
         gp, gq = d[0] / rise, d[1] / rise
-        top, bottom, sense = w, -pattern.depth - thin_of(pattern), DOWN
+        top, bottom, sense = w, -pattern.depth - thin_of(pattern), SINK if within else DOWN
         if rise > 0.0:
-            top, bottom, sense = pattern.height + thin_of(pattern), w, UP
+            top, bottom, sense = pattern.height + thin_of(pattern), w, RISE if within else UP
         m = meet_far(pattern, found, spans, x, y, w, gp, gq, top, bottom, sense)
         if m.w == -math.inf:
-            if rise > 0.0 and len(leaving) > 0:
+            leaves = rise < 0.0 if within else rise > 0.0
+            if leaves and len(leaving) > 0:
                 ray = leaving[gone[0]]
                 gone[0] += 1
                 place = to_world(frame, x, y, w)
                 for c in range(3):
                     ray.origin[c], ray.way[c], ray.through[c] = place[c], way[c], through[c]
                 ray.footprint, ray.number, ray.bounces, ray.object = index, number, left, frame.object
-                ray.clear = max(-w, 0.0) / rise
-            elif rise > 0.0:
+                ray.within = int(within)
+                ray.clear = max((bottom if within else 0.0) - w, 0.0) / rise
+            elif leaves:
                 sky = sky_from(lighting, way)
                 red, green, blue = red + through[0] * sky[0], green + through[1] * sky[1], blue + through[2] * sky[2]
             break
@@ -102,13 +109,18 @@ def follow(
         material = materials[slots[slot]]
         off = lift(pattern, found, m) / math.sqrt(across[0] ** 2 + across[1] ** 2 + across[2] ** 2)
         at = to_world(frame, x, y, w)
-        n, e = normal_to_world(frame, across), (-way[0], -way[1], -way[2])
+        e = (-way[0], -way[1], -way[2])
+        n = normal_to_world(frame, across)
+        if curved:
+            over = normal_to_world(frame, turned(frame, x - frame.pq[0], y - frame.pq[1], w, across))
+            if dot(over, e) > 0.0:
+                n = over
         x, y, w = x + off * across[0], y + off * across[1], w + off * across[2]
         last = left == 1
         colour = (material.emissive[0], material.emissive[1], material.emissive[2])
-        if last:
+        if last and not within:
             colour = ambient(material, lighting, albedo, n, e)
-        for l in range(len(lights)):
+        for l in range(0 if within else len(lights)):
             if (blocked >> np.uint64(l)) & np.uint64(1):
                 continue
             light = light_to_pattern(frame, lights[l])
@@ -122,7 +134,10 @@ def follow(
         if last:
             break
         lobe, u, v = drawn(number, left, seed, px, py)
-        way, weight = scatter(material, albedo, n, e, lobe, u, v)
+        way, weight = scatter(material, albedo, n, e, lobe, u, v, within)
+        if dot(n, way) < 0.0:  # through the facet
+            within = not within
+            x, y, w = x - 2.0 * off * across[0], y - 2.0 * off * across[1], w - 2.0 * off * across[2]
         through = (through[0] * weight[0], through[1] * weight[1], through[2] * weight[2])
         if max(through[0], through[1], through[2]) <= 0.0:
             break

@@ -54,9 +54,12 @@ def local(obj: np.void, x: float, y: float, z: float) -> Vector:
 
 @leaf
 def meet_shape(
-    obj: np.void, o: tuple[float, float, float], d: tuple[float, float, float], far: float
+    obj: np.void, o: tuple[float, float, float], d: tuple[float, float, float], far: float, within: bool
 ) -> tuple[float, int]:
-    """The nearest t in (0, far) at which o + t d (the object's axes) meets the shape, and the face; inf: nowhere."""
+    """The nearest t in (0, far) at which o + t d (the object's axes) meets the shape, and the face; inf: nowhere.
+
+    within: the farthest, where a ray leaves that began inside.
+    """
     if obj.shape == RECTANGLE:
         if d[2] != 0.0:
             t = -o[2] / d[2]
@@ -70,26 +73,28 @@ def meet_shape(
         b = o[0] * d[0] + o[1] * d[1] + o[2] * d[2]
         c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] - obj.size[0] * obj.size[0]
         t0, t1 = solve(a, b, c)
-        if 0.0 < t0 < far:
+        if 0.0 < t0 < far and not within:
             return t0, 0
         return (t1, 0) if 0.0 < t1 < far else (math.inf, 0)
     if obj.shape == CYLINDER:
-        best, face = math.inf, 0
+        best, face = -math.inf if within else math.inf, 0
         a, b = d[0] * d[0] + d[1] * d[1], o[0] * d[0] + o[1] * d[1]
         t0, t1 = solve(a, b, o[0] * o[0] + o[1] * o[1] - obj.size[0] * obj.size[0])
         half = 0.5 * obj.size[1]
         for k in range(2):
             t = t0 if k == 0 else t1
-            if 0.0 < t < min(far, best) and abs(o[2] + t * d[2]) <= half:
+            nearer = t > best if within else t < best
+            if 0.0 < t < far and nearer and abs(o[2] + t * d[2]) <= half:
                 best, face = t, 0
         if d[2] != 0.0:
             for k in range(2):
                 t = ((half if k == 0 else -half) - o[2]) / d[2]
-                if 0.0 < t < min(far, best):
+                nearer = t > best if within else t < best
+                if 0.0 < t < far and nearer:
                     x, y = o[0] + t * d[0], o[1] + t * d[1]
                     if x * x + y * y <= obj.size[0] * obj.size[0]:
                         best, face = t, 1
-        return best, face
+        return (best, face) if best > 0.0 else (math.inf, 0)
     return math.inf, 0
 
 
@@ -113,7 +118,8 @@ def touch(obj: np.void, face: int, x: float, y: float, z: float) -> tuple[float,
 def cast(objects: NDArray[np.void], origins: Floats, directions: Floats, own: Ints, hits: NDArray[np.void]) -> None:
     """The nearest hit of each ray from `origins` (n, 3) along `directions` (n, 3), with all shapes but meshes.
 
-    own: (n,) the row of OBJECT that a ray leaves and does not meet again; -1: none.
+    own: (n,) the row k of OBJECT that a ray leaves and does not meet again, or -2 - k where it goes on inside that; -1:
+    none.
     """
     for i in range(len(directions)):
         hit = hits[i]
@@ -122,12 +128,13 @@ def cast(objects: NDArray[np.void], origins: Floats, directions: Floats, own: In
         dx, dy, dz = directions[i, 0], directions[i, 1], directions[i, 2]
         for k in range(len(objects)):
             obj = objects[k]
-            if obj.shape == MESH or k == own[i]:
+            within = k == -2 - own[i]
+            if obj.shape == MESH or k == own[i] or (within and obj.shape == RECTANGLE):
                 continue
             s = obj.translation
             o = local(obj, origins[i, 0] - s[0], origins[i, 1] - s[1], origins[i, 2] - s[2])
             d = local(obj, dx, dy, dz)
-            t, face = meet_shape(obj, o, d, hit.t)
+            t, face = meet_shape(obj, o, d, hit.t, within)
             if t < hit.t:
                 hit.object, hit.face, hit.t = k, face, t
                 hit.u, hit.v, nx, ny, nz = touch(obj, face, o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2])
@@ -195,7 +202,7 @@ def block(
             s = obj.translation
             o = local(obj, origins[i, 0] - s[0], origins[i, 1] - s[1], origins[i, 2] - s[2])
             d = local(obj, directions[i, 0], directions[i, 1], directions[i, 2])
-            t, _ = meet_shape(obj, o, d, far[i])
+            t, _ = meet_shape(obj, o, d, far[i], False)
             if t < far[i]:
                 blocked[i] = True
                 break
@@ -281,7 +288,7 @@ def frames_at(
 ) -> None:  # fmt: skip
     """The tangent frame (n,) FRAME at each hit (n,) of the rays from `origins` (n, 3) along `directions` (n, 3).
 
-    Seen from behind, a surface is bare and turned to the viewer. bent: what carries no pattern has a form as well.
+    Seen from behind, an opaque surface is bare and turned to the viewer. bent: what carries no pattern has a form, too.
     """
     for i in range(len(hits)):
         hit, frame, origin = hits[i], frames[i], origins[i]
@@ -344,7 +351,8 @@ def frames_at(
         a = (a[0] / m[0], a[1] / m[0], a[2] / m[0])
         b = (b[0] / m[1], b[1] / m[1], b[2] / m[1])
         turned = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0
-        if turned:
+        frame.within = 1 if turned and obj.clear == 1 else 0
+        if turned and obj.clear == 0:
             n = (-n[0], -n[1], -n[2])
             frame.grooved = 0
         fill_frame(frame, p, a, b, n, origin)

@@ -43,7 +43,8 @@ LEVEL = 1e-6  # a ray's slope to the plane is taken for at least this
 THIN = 1e-7  # solid thinner than this part of the pattern's height range, or width, is rounding, not matter
 
 
-DOWN, UP, SHADOW = fixed(0), fixed(1), fixed(2)  # where a ray goes
+DOWN, UP, SHADOW = fixed(0), fixed(1), fixed(2)  # where a ray goes,
+SINK, RISE = fixed(3), fixed(4)  # and where one goes that is inside the solid
 
 
 class Meeting(NamedTuple):
@@ -107,12 +108,13 @@ def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[floa
 
 
 @leaf
-def last(e: Events, n: int, high: float, low: float, thin: float) -> tuple[float, int, int]:
-    """The same for a ray on its way up: where the solid that it meets first begins."""
+def last(e: Events, n: int, high: float, low: float, thin: float, way: int) -> tuple[float, int, int]:
+    """The same for a ray on its way UP: where the solid that it meets first begins; and for one inside the solid, where
+    that ends."""
     begin(e, n)
     below = high <= 0.0
     found, owner, what = -math.inf, -1, PLANE
-    solid = False  # where the ray ends, it is not stopped
+    solid = way == SINK  # where a ray ends that goes up, it is not stopped
     k = 0
     while k < n or not below:
         at = e.w[e.order[k]] if k < n else -math.inf
@@ -130,8 +132,10 @@ def last(e: Events, n: int, high: float, low: float, thin: float) -> tuple[float
                 facet, by = e.change[e.order[k], 3], e.change[e.order[k], 4]
             k += 1
         now = is_solid(e, below)
-        if solid and not now:
+        if solid != now and now == (way == RISE):
             found, what, owner = at, facet, by
+            if way == SINK:
+                break
         solid = now
     return found, what, owner
 
@@ -143,9 +147,9 @@ def meet(
 ) -> Meeting:  # fmt: skip
     """Where the ray through (p, q) with slope (gp, gq) first enters the solid between the heights `high` and `low`.
 
-    way: it goes DOWN or UP, or it is a SHADOW's, which goes up and asks only whether there is anything. `count` pieces
-    have been found for the whole footprint; where -1, the ray looks for them itself, stretch by stretch. w = -inf:
-    nothing.
+    way: it goes DOWN or UP, or it is a SHADOW's, which goes up and asks only whether there is anything; or it is inside
+    the solid and leaves it first on its way down, SINK, or up, RISE. `count` pieces have been found for the whole
+    footprint; where -1, the ray looks for them itself, stretch by stretch. w = -inf: nothing.
     """
     thin = THIN * (pattern.height + pattern.depth)
     slope = math.hypot(gp, gq)
@@ -156,8 +160,9 @@ def meet(
         travel = slope * (high - low)
         stride = 2.0 * max(pattern.grid.cell[0], pattern.grid.cell[1]) + pattern.reach
         stretches = int(min(max(math.ceil(travel / stride), 1.0), 1e6))
-    for k in range(min(stretches, SEARCH) if way != DOWN else stretches):
-        j = stretches - 1 - k if way != DOWN else k
+    descends = way in (DOWN, SINK)
+    for k in range(stretches if descends else min(stretches, SEARCH)):
+        j = k if descends else stretches - 1 - k
         a = high + (low - high) * j / stretches
         c = high + (low - high) * (j + 1) / stretches
         pieces = count
@@ -199,10 +204,10 @@ def meet(
                 if max(x * x + y * y, (x + mx) ** 2 + (y + my) ** 2) < inner * inner:
                     continue
             n = meet_piece(pattern, e, n, i, item, dx, dy, p, q, gp, gq, a, c)
-        if way == UP:
-            w, facet, owner = last(e, n, a, c, thin)
-        else:
+        if way in (DOWN, SHADOW):
             w, facet, owner = first(e, n, a, c, thin)
+        else:
+            w, facet, owner = last(e, n, a, c, thin, way)
         if w > -math.inf:
             return Meeting(w, facet, owner // PARTS if owner >= 0 else -1, owner % PARTS if owner >= 0 else 0)
     return OPEN

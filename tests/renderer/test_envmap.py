@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import schema
-from renderer import film, shading, skyfile
+from renderer import film, scattering, shading, skyfile
 from renderer.errors import RenderError
 from renderer.shading import Vector
 from renderer.surroundings import prepared, surroundings
@@ -181,7 +181,7 @@ def gloss(
     total = 0.0
     for i in range(count):
         for j in range(count):
-            l, weight = shading.scatter(row[0], albedo, n, e, 0.0, (i + 0.5) / count, (j + 0.5) / count)
+            l, weight = scattering.scatter(row[0], albedo, n, e, 0.0, (i + 0.5) / count, (j + 0.5) / count, False)
             total += weight[0] * shading.sky_from(lighting, l)[0] / count**2
     return shading.ambient(row[0], lighting, albedo, n, e)[0], total
 

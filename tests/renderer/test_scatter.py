@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from renderer.kernel import kernel
-from renderer.shading import between, dot, gloss_albedo, reflect, scatter, unit
+from renderer.scattering import scatter
+from renderer.shading import between, dot, gloss_albedo, reflect, unit
 from renderer.tables import MATERIAL, Floats
 
 GRID = 128  # draws each way, and steps of the quadrature over GRID * 4 by GRID * 4
@@ -32,7 +33,7 @@ def drawn(material: Any, albedo: Floats, n: Floats, e: Floats, grid: int) -> Flo
     for i in range(grid):
         for j in range(grid):
             lobe = (0.5 + i * grid + j) * 0.6180339887498949 % 1.0
-            l, weight = scatter(material, albedo, normal, eye, lobe, (i + 0.5) / grid, (j + 0.5) / grid)
+            l, weight = scatter(material, albedo, normal, eye, lobe, (i + 0.5) / grid, (j + 0.5) / grid, False)
             for c in range(3):
                 found[0, c] += weight[c]
                 for k in range(3):

@@ -61,12 +61,11 @@ def test_envmap_is_rendered(scene: dict[str, Any]) -> None:
     assert warnings(scene) == []
 
 
-def test_refraction_is_left_out(scene: dict[str, Any]) -> None:
+def test_refraction_wants_bounces(scene: dict[str, Any]) -> None:
     scene["objects"][0]["material"] = "glass"
-    for bounces in (0, 2):
-        scene["render"]["bounces"] = bounces
-        assert "/materials/glass/transmission" in warnings(scene)
-    scene["materials"]["glass"]["transmission"] = 0
+    scene["materials"]["glass"]["roughness"] = 0.5
+    assert warnings(scene) == ["/materials/glass/transmission"]
+    scene["render"]["bounces"] = 2
     assert warnings(scene) == []
 
 
