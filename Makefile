@@ -33,7 +33,7 @@ serve: $(STAMPS)/install $(PAGE)
 # The kernels are compiled once beforehand, not by each of pytest's processes. pytest comes last: its summary is the
 # last line.
 test: check $(CHECK_PAGE) $(PAGE) $(STAMPS)/chromium
-	$(BIN)/python -c 'from renderer import pipeline; pipeline.warm_up()'
+	$(BIN)/python -c 'from renderer.pipeline import warm_up; warm_up(lines=True, geometry=True, textures=True, meshes=True)'
 	$(BIN)/python -m pytest $(PYTEST)
 
 bench: $(STAMPS)/dev

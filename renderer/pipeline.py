@@ -469,22 +469,13 @@ def warm_up(*, lines: bool = False, geometry: bool = False, textures: bool = Fal
     The kernels of methods `lines`, `geometry` and `relief`, and those of mesh files, are left until they are asked for.
     """
     begin = time.perf_counter()
+    beside = None
+    if not kernels_compiled() and (os.cpu_count() or 1) > 1:  # half of the work in another process
+        others = ("line", "csg", "lines") if lines else ("line", "csg")
+        program = f"from renderer import pipeline; pipeline.compile_analytic{others}"
+        beside = subprocess.Popen([sys.executable, "-c", program], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     if "analytic" not in _warm:
-        beside = None
-        if not kernels_compiled() and (os.cpu_count() or 1) > 1:  # `area` takes as long as all others
-            program = "from renderer import pipeline; pipeline.compile_analytic('line', 'csg')"
-            beside = subprocess.Popen(
-                [sys.executable, "-c", program], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-            )
         compile_analytic("area")
-        if beside is not None:
-            beside.wait()
-        compile_analytic("line", "csg")
-        _READY.touch()
-        _warm.add("analytic")
-    if lines and "lines" not in _warm:
-        compile_analytic("lines")
-        _warm.add("lines")
     if geometry and "geometry" not in _warm:
         _try("geometry", {"type": "rectangle", "size": [2, 2]})
         _try("geometry", {"type": "sphere", "radius": 1})
@@ -493,6 +484,15 @@ def warm_up(*, lines: bool = False, geometry: bool = False, textures: bool = Fal
     if textures and "relief" not in _warm:
         _try("relief", {"type": "rectangle", "size": [2, 2]})
         _warm.add("relief")
+    if beside is not None:
+        beside.wait()
+    if "analytic" not in _warm:
+        compile_analytic("line", "csg")
+        _READY.touch()
+        _warm.add("analytic")
+    if lines and "lines" not in _warm:
+        compile_analytic("lines")
+        _warm.add("lines")
     if meshes and "meshes" not in _warm:
         _try("line", _MESH)
         _warm.add("meshes")
