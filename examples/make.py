@@ -1,5 +1,5 @@
-"""Writes the examples that are too long to write by hand: vinyl, single, hieroglyphs, brushed (with its
-mesh, vase.obj).
+"""Writes the examples that are too long to write by hand: vinyl, single, hieroglyphs, brushed and house (with their
+meshes, vase.obj and end_wall.obj).
 
     python examples/make.py
 
@@ -14,6 +14,8 @@ import random
 import re
 from pathlib import Path
 from typing import Any
+
+from house import end_wall, house
 
 HERE = Path(__file__).parent
 Json = dict[str, Any]
@@ -359,7 +361,8 @@ def brushed() -> Json:
 def main() -> None:
     """Write all files."""
     (HERE / "vase.obj").write_text(vase())
-    for scene in (vinyl, single, hieroglyphs, brushed):
+    (HERE / "end_wall.obj").write_text(end_wall())
+    for scene in (vinyl, single, hieroglyphs, brushed, house):
         (HERE / f"{scene.__name__}.json").write_text(text(scene()) + "\n")
 
 

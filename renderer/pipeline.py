@@ -471,16 +471,15 @@ def warm_up(*, lines: bool = False, geometry: bool = False, textures: bool = Fal
     begin = time.perf_counter()
     beside = None
     if not kernels_compiled() and (os.cpu_count() or 1) > 1:  # half of the work in another process
-        others = ("line", "csg", "lines") if lines else ("line", "csg")
-        program = f"from renderer import pipeline; pipeline.compile_analytic{others}"
+        program = "from renderer import pipeline; pipeline.compile_analytic('line', 'csg')"
+        if geometry:
+            program += "; pipeline.compile_geometry()"
         beside = subprocess.Popen([sys.executable, "-c", program], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     if "analytic" not in _warm:
         compile_analytic("area")
-    if geometry and "geometry" not in _warm:
-        _try("geometry", {"type": "rectangle", "size": [2, 2]})
-        _try("geometry", {"type": "sphere", "radius": 1})
-        _try("geometry", _MESH)
-        _warm.add("geometry")
+    if lines and "lines" not in _warm:
+        compile_analytic("lines")
+        _warm.add("lines")
     if textures and "relief" not in _warm:
         _try("relief", {"type": "rectangle", "size": [2, 2]})
         _warm.add("relief")
@@ -490,9 +489,9 @@ def warm_up(*, lines: bool = False, geometry: bool = False, textures: bool = Fal
         compile_analytic("line", "csg")
         _READY.touch()
         _warm.add("analytic")
-    if lines and "lines" not in _warm:
-        compile_analytic("lines")
-        _warm.add("lines")
+    if geometry and "geometry" not in _warm:
+        compile_geometry()
+        _warm.add("geometry")
     if meshes and "meshes" not in _warm:
         _try("line", _MESH)
         _warm.add("meshes")
@@ -503,6 +502,13 @@ def compile_analytic(*methods: str) -> None:
     """Compile the kernels of these methods, or load them."""
     for method in methods:
         _try(method, {"type": "sphere", "radius": 1})
+
+
+def compile_geometry() -> None:
+    """Compile the kernels of method `geometry`, or load them."""
+    _try("geometry", {"type": "rectangle", "size": [2, 2]})
+    _try("geometry", {"type": "sphere", "radius": 1})
+    _try("geometry", _MESH)
 
 
 _MESH: dict[str, object] = {"type": "mesh", "file": "triangle.obj"}

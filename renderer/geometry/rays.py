@@ -25,7 +25,7 @@ from renderer.geometry.solid import (
     shadow_ray,
     thin_of,
 )
-from renderer.geometry.spans import Events
+from renderer.geometry.spans import BODY, PLANE, Events
 from renderer.kernel import callee
 from renderer.scattering import scatter
 from renderer.shading import (
@@ -53,6 +53,8 @@ def meet_far(
     """What the ray through (x, y, w) meets between two heights."""
     if top <= bottom:
         return OPEN
+    if len(pattern.pieces) == 0:  # bare
+        return Meeting(0.0, PLANE, -1, BODY) if way in (DOWN, RISE) else OPEN
     return meet(pattern, found, spans, -1, x - w * gp, y - w * gq, gp, gq, top, bottom, way)
 
 
