@@ -93,6 +93,15 @@ def meet_surface(
     keep(owned)
 
 
+@kernel
+def add(rays: NDArray[np.void], stopped: NDArray[np.bool_], radiance: Floats) -> None:
+    """Add the light of the RAYs that are not stopped to their footprints' radiance."""
+    for k in range(len(rays)):
+        if not stopped[k]:
+            for c in range(3):
+                radiance[rays[k].footprint, c] += rays[k].through[c]
+
+
 class Shapes(Protocol):
     """What rays meet: `raycast.Caster`."""
 
@@ -112,6 +121,16 @@ class Shapes(Protocol):
         self, origin: Floats, directions: Floats, hits: NDArray[np.void], lights: NDArray[np.void]
     ) -> NDArray[np.uint64]:
         """For each hit (n,) a mask of the lights that something stands before."""
+
+    def stopped(self, points: Floats, ways: Floats, far: Floats, own: Ints) -> NDArray[np.bool_]:
+        """Whether another object stands in each of the `ways` (n, 3) from `points` (n, 3) of the objects `own` (n,)."""
+
+
+def ask(rays: NDArray[np.void], shapes: Shapes, radiance: Floats) -> None:
+    """Add the light of RAYs towards lights, `clear` times their ways off, where no other object stands in them."""
+    for number in np.unique(rays["number"]):
+        some = rays[rays["number"] == number]
+        add(some, shapes.stopped(some["origin"], some["way"], some["clear"], some["object"].astype(np.int32)), radiance)
 
 
 def meet(

@@ -46,25 +46,27 @@ SURE = 0.5  # how much of the tolerance the standard error may take
 @kernel
 def csg(
     samples: int, bounces: int, indirect: bool, tolerance: float, sparing: bool, seed: int, leaving: NDArray[np.void],
-    gone: NDArray[np.int64], pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64],
-    frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32],
-    albedo: NDArray[np.float64], radiance: NDArray[np.float64], method: NDArray[np.uint8],
+    gone: NDArray[np.int64], asking: NDArray[np.void], asked: NDArray[np.int64], pattern: Pattern,
+    footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera,
+    lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: NDArray[np.float64],
+    radiance: NDArray[np.float64], method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
-    samples: at least so many a footprint, in a grid of strata, where the tolerance is 0; else as many as that asks for,
+    samples: at least so many a pixel, in a grid of strata, where the tolerance is 0; else as many as that asks for,
     which is the error relative to a white surface in the same light. sparing: NOT_MINE, where that is more than
     MOST * MOST. bounces: how often light is followed from facet to facet, by no more than `samples` rays a footprint;
     indirect: that light alone, added to what is there. leaving: room for each sample's RAY (`rays.follow`), if others
-    are to meet them; `gone` (1,) is how many there are. slots: rows of `materials` for the pattern's facets, the
-    object's own first.
+    are to meet them; `gone` (1,) is how many there are. asking, asked: the same for light that another object may keep
+    from where a footprint is `torn`; its `number` is the light's. slots: rows of `materials` for the pattern's facets,
+    the object's own first.
     """
     capacity = max(pattern.near, SHARED)
     owned = nearby(pattern, capacity), events(pattern), nearby(pattern, capacity)
     found, spans, around = borrow(owned[0]), borrow(owned[1]), borrow(owned[2])
     pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
     materials, slots, albedo = borrow(materials), borrow(slots), borrow(albedo)
-    leaving, gone = borrow(leaving), borrow(gone)
+    leaving, gone, asking, asked = borrow(leaving), borrow(gone), borrow(asking), borrow(asked)
     lights, eye = lighting.lights, camera.origin
     high, low = pattern.height, -pattern.depth
     thin = thin_of(pattern)
@@ -109,8 +111,9 @@ def csg(
         if apart:
             shared = -1
 
-        across = int(math.ceil(math.sqrt(samples)))
-        down = (samples + across - 1) // across
+        share = samples if tolerance > 0.0 else max(int(math.ceil(samples * footprint.size * footprint.size)), 1)
+        across = int(math.ceil(math.sqrt(share)))
+        down = (share + across - 1) // across
         most = MOST if bounces == 0 else max(across, FIRST)  # rays from facet to facet take their time
         corners = 0
         target = 0.0
@@ -125,7 +128,7 @@ def csg(
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0
         taken = looked = 0
-        departed = gone[0]
+        departed, inquired = gone[0], asked[0]
         while True:
             red = green = blue = 0.0
             taken = 0
@@ -172,7 +175,8 @@ def csg(
                 off = lift(pattern, found, m) / math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
                 sx, sy, sw = x + off * n[0], y + off * n[1], at + off * n[2]
                 for l in range(0 if indirect else len(lights)):
-                    if (footprint.blocked >> np.uint64(l)) & np.uint64(1):
+                    torn = len(asking) > 0 and (footprint.torn >> np.uint64(l)) & np.uint64(1) != 0
+                    if not torn and (footprint.blocked >> np.uint64(l)) & np.uint64(1):
                         continue
                     d = light_to_pattern(frame, lights[l])
                     lp, lq, lw = d[0] - d[3] * x, d[1] - d[3] * y, d[2] - d[3] * at
@@ -190,6 +194,15 @@ def csg(
                         s = meet(pattern, found, spans, shared, sx - sw * lp, sy - sw * lq, lp, lq, roof, ground, way)
                         if s.w > -math.inf:
                             continue
+                    if torn:
+                        ray, place = asking[asked[0]], to_world(frame, sx, sy, sw)
+                        asked[0] += 1
+                        for axis in range(3):
+                            ray.origin[axis], ray.through[axis] = place[axis], colour[axis]
+                            ray.way[axis] = lights[l].vector[axis] - d[3] * place[axis]
+                        ray.footprint, ray.number, ray.object = index, l, frame.object
+                        ray.clear = 1.0 - 1e-9 if d[3] != 0.0 else math.inf
+                        continue
                     lit |= np.uint64(1) << np.uint64(l)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 if bounces > 0:
@@ -242,10 +255,11 @@ def csg(
         if taken == 0:
             method[index] = NOT_MINE
             continue
-        for k in range(departed, gone[0]):
-            leaving[k].through[0] /= taken
-            leaving[k].through[1] /= taken
-            leaving[k].through[2] /= taken
+        for axis in range(3):
+            for k in range(departed, gone[0]):
+                leaving[k].through[axis] /= taken
+            for k in range(inquired, asked[0]):
+                asking[k].through[axis] /= taken
         method[index] = CSG
         if not indirect:
             radiance[index, :] = 0.0

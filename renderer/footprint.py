@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.shapes import touching
-from renderer.tables import FOOTPRINT, FRAME, HIT, RECTANGLE, Camera, Floats, Ints
+from renderer.tables import FOOTPRINT, FRAME, HIT, MESH, RECTANGLE, Camera, Floats, Ints
 
 LEVELS = 4  # splits of a pixel on an edge: 256 footprints at most
 SMOOTH_COSINE = 0.9  # normals within a footprint differ by less than about 25 degrees
@@ -34,6 +34,9 @@ class Shapes(Protocol):
         self, origin: Floats, directions: Floats, hits: NDArray[np.void], lights: NDArray[np.void]
     ) -> NDArray[np.uint64]:
         """For each hit (n,) a mask of the lights that something stands before."""
+
+    def blocked_off(self, points: Floats, own: Ints, lights: NDArray[np.void]) -> NDArray[np.uint64]:
+        """The same for points (n, 3) of the grooves of the objects `own` (n,)."""
 
 
 class Tile(NamedTuple):
@@ -72,9 +75,11 @@ def flat_frames(shapes: Shapes, origin: Floats) -> dict[int, NDArray[np.void]]:
 
 
 def footprints(
-    shapes: Shapes, camera: Camera, lights: NDArray[np.void], tile: Tile, flat: dict[int, NDArray[np.void]], seed: int
-) -> Footprints:
-    """The footprints of a tile."""
+    shapes: Shapes, camera: Camera, lights: NDArray[np.void], tile: Tile, flat: dict[int, NDArray[np.void]],
+    heights: Floats, seed: int,
+) -> Footprints:  # fmt: skip
+    """The footprints of a tile. heights: (n, 2) of each row of OBJECT, how high and how deep its grooves are, pattern
+    units."""
     ys, xs = np.mgrid[0 : tile.height + 1, 0 : tile.width + 1]  # corners, shared by the pixels around
     corner_rays = rays(camera, (xs + tile.x).ravel().astype(float), (ys + tile.y).ravel().astype(float))
     corners = shapes.hits(camera.origin, corner_rays)
@@ -113,7 +118,34 @@ def footprints(
             corners = shapes.hits(camera.origin, directions)
             corner_mask = shapes.blocked(camera.origin, directions, corners, lights)
             around = np.arange(len(corners)).reshape(4, -1)
-    return _joined(done)
+    out = _joined(done)
+    mark_torn(shapes, camera, lights, heights, out)
+    return out
+
+
+def mark_torn(
+    shapes: Shapes, camera: Camera, lights: NDArray[np.void], heights: Floats, seen: Footprints
+) -> None:  # fmt: skip
+    """Find the lights that something keeps from a part of a footprint's grooves: what its corners see of them at their
+    highest and at their lowest is not lit as the bare surface is."""
+    prints = seen.footprints
+    own = seen.frames["object"][prints["frame"]]
+    grooved = (seen.frames["grooved"][prints["frame"]] != 0) & (shapes.objects["shape"][own] != MESH)
+    for side in range(2):
+        which = np.flatnonzero(grooved & (heights[own, side] > 0.0))
+        some, frames = prints[which], seen.frames[prints["frame"][which]]
+        up = frames["dual"][:, 2]  # what of a way is height
+        start = np.einsum("nk,nk->n", up, camera.origin - frames["origin"])
+        height = np.minimum(heights[own[which], side] * (1.0 - 2.0 * side), 0.5 * start)
+        for corner in range(4 if len(which) else 0):
+            x, y = some["x"] + (corner & 1) * some["size"], some["y"] + (corner >> 1) * some["size"]
+            way = rays(camera, x, y)
+            fall = np.einsum("nk,nk->n", up, way)
+            meets = fall < 0.0
+            t = np.divide(height - start, fall, out=np.zeros_like(fall), where=meets)
+            points = camera.origin + t[:, None] * way
+            differ = shapes.blocked_off(points, own[which].astype(np.int32), lights) ^ some["blocked"]
+            prints["torn"][which] |= np.where(meets, differ, np.uint64(0))
 
 
 def _inside(x: Floats, y: Floats, seed: int) -> Floats:

@@ -96,6 +96,7 @@ class Frame:
     settings: Settings
     caster: Caster
     flat: dict[int, NDArray[np.void]]
+    heights: Floats  # as `footprint.footprints` wants them: of methods that see what another object shades of a groove
     model: Truth | Textures | None  # what methods geometry and relief trace
     albedo: Floats
     radiance: NDArray[np.float32]
@@ -118,7 +119,9 @@ class Frame:
             )  # fmt: skip
             self._put(tile, image, methods)
             return {"geometry": clock() - begin}
-        seen = footprints(self.caster, scene.camera, scene.lighting.lights, tile, self.flat, settings.seed)
+        seen = footprints(
+            self.caster, scene.camera, scene.lighting.lights, tile, self.flat, self.heights, settings.seed
+        )  # fmt: skip
         cast = clock()
         radiance = np.zeros((len(seen.footprints), 5))  # RGB, predicted error, cost
         method = np.full(len(seen.footprints), BASE, np.uint8)
@@ -171,11 +174,15 @@ class Frame:
         """
         scene, settings = self.scene, self.settings
         part = Part(row, pattern, seen, scene.lighting, radiance, method, spent)
+        torn = seen.footprints["torn"][chosen] != 0
+        if torn.any():
+            self._sample(part, chosen[torn], 0.0, settings.bounces)
+            chosen = chosen[~torn]
         if settings.bounces == 0 or settings.method == "relief":
             self._direct(part, chosen)
             return
         if settings.method == "csg":
-            self._sample(part, chosen, 0.0)
+            self._sample(part, chosen, 0.0, settings.bounces)
             return
         if not self.rays_go_on:
             start = time.perf_counter()
@@ -186,7 +193,7 @@ class Frame:
             lights, sky, around, _ = scene.lighting
             alone = Lighting(lights, np.zeros(3), left=float(sky.mean()) + around.white)
             self._direct(part._replace(lighting=alone), chosen)
-            self._sample(part, chosen, settings.tolerance, indirect=True)
+            self._sample(part, chosen, settings.tolerance, settings.bounces, indirect=True)
 
     def _of(self, part: Part) -> tuple[Any, ...]:
         """What all kernels take after the footprints."""
@@ -226,16 +233,8 @@ class Frame:
         settings, pattern, footprints, method = self.settings, part.pattern, part.seen.footprints, part.method
         rest = self._of(part)
 
-        def sample(which: NDArray[np.int64], tolerance: float, sparing: bool) -> None:
-            start = time.perf_counter()
-            csg(
-                settings.samples, 0, False, tolerance, sparing, settings.seed, NO_RAYS, np.zeros(1, np.int64), pattern,
-                footprints, which, *rest,
-            )  # fmt: skip
-            part.took("csg", start)
-
         if settings.method == "csg" and pattern is not BARE:
-            sample(chosen, 0.0, sparing=False)
+            self._sample(part, chosen, 0.0)
             return
         start = time.perf_counter()
         if isinstance(self.model, Textures) and pattern is not BARE:
@@ -261,36 +260,43 @@ class Frame:
             part.took("lines" if settings.method == "lines" else "area", start)
             left = left[method[left] == NOT_MINE]
         if len(left) and settings.method == "auto":
-            sample(left, settings.tolerance, sparing=True)
+            self._sample(part, left, settings.tolerance, sparing=True)
             left = in_blocks(footprints, left[method[left] == NOT_MINE])
             start = time.perf_counter()  # with as many strips as there is room for, where samples do not do
             area_sampling(settings.tolerance, STRIPS, int(part.row) in self.flat, pattern, footprints, left, *rest)
             part.took("area", start)
             left = left[method[left] == NOT_MINE]
         if len(left):
-            sample(left, settings.tolerance, sparing=False)
+            self._sample(part, left, settings.tolerance)
 
-    def _sample(self, part: Part, chosen: NDArray[np.int64], tolerance: float, indirect: bool = False) -> None:
-        """Shade footprints by rays from facet to facet, and on to other objects if there are any.
+    def _sample(
+        self, part: Part, chosen: NDArray[np.int64], tolerance: float, bounces: int = 0, *, indirect: bool = False,
+        sparing: bool = False,
+    ) -> None:  # fmt: skip
+        """Shade footprints by `csg`; rays go from facet to facet, and on to other objects if there are any.
 
-        indirect: add what these bring to what is there.
+        indirect: add what these bring to what is there. Of what is torn, all of `chosen` or nothing.
         """
-        settings = self.settings
-        each, batch = 0, len(chosen)
-        if self.rays_go_on:
+        settings, footprints = self.settings, part.seen.footprints
+        each, asks = 0, 0  # rays that a footprint may send out
+        if bounces > 0 and self.rays_go_on:
             each, tolerance = math.prod(self._strata()), 0.0
-            batch = max(RAYS // each, 1)
+        if not indirect and footprints["torn"][chosen].any():
+            asks, tolerance = math.prod(self._strata()) * len(part.lighting.lights), 0.0
+        batch = max(RAYS // (each + asks), 1) if each + asks else len(chosen)
         for first in range(0, len(chosen), batch):
             start = time.perf_counter()
             some = chosen[first : first + batch]
             leaving, gone = np.zeros(len(some) * each, RAY), np.zeros(1, np.int64)
+            asking, asked = np.zeros(len(some) * asks, RAY), np.zeros(1, np.int64)
             csg(
-                settings.samples, settings.bounces, indirect, tolerance, False, settings.seed, leaving, gone,
-                part.pattern, part.seen.footprints, some, *self._of(part),
+                settings.samples, bounces, indirect, tolerance, sparing, settings.seed, leaving, gone, asking, asked,
+                part.pattern, footprints, some, *self._of(part),
             )  # fmt: skip
             part.took("csg", start)
             start = time.perf_counter()
-            self._meet(leaving[: gone[0]], part.seen.footprints, part.radiance)
+            bounce.ask(asking[: asked[0]], self.caster, part.radiance)
+            self._meet(leaving[: gone[0]], footprints, part.radiance)
             part.took("bounce", start)
 
 
@@ -377,12 +383,17 @@ def _albedo() -> Floats:
 def _frame(compiled: CompiledScene, settings: Settings, model: Truth | Textures | None = None) -> Frame:
     caster = Caster(compiled.objects, compiled.triangles, bent=settings.bounces > 0)
     width, height = compiled.resolution
+    heights = np.zeros((len(compiled.objects), 2))
+    for row, index in enumerate(compiled.objects["pattern"]):
+        if index >= 0 and caster.shadows and settings.method in ("auto", "lines", "area", "csg"):
+            heights[row] = compiled.patterns[index].height, compiled.patterns[index].depth
     lit = settings.bounces > 0 or bool(compiled.lighting.sky.any()) or shading.has_picture(compiled.lighting)
     return Frame(
         scene=compiled,
         settings=settings,
         caster=caster,
         flat=flat_frames(caster, compiled.camera.origin),
+        heights=heights,
         model=model,
         albedo=_albedo() if lit else np.zeros((2, 2, 4)),
         radiance=np.zeros((height, width, 3), np.float32),
@@ -470,7 +481,9 @@ def warm_up(*, lines: bool = False, geometry: bool = False, textures: bool = Fal
     """
     begin = time.perf_counter()
     beside = None
-    if not kernels_compiled() and (os.cpu_count() or 1) > 1:  # half of the work in another process
+    if (
+        "analytic" not in _warm and not kernels_compiled() and (os.cpu_count() or 1) > 1
+    ):  # half of the work in another process
         program = "from renderer import pipeline; pipeline.compile_analytic('line', 'csg')"
         if geometry:
             program += "; pipeline.compile_geometry()"

@@ -99,6 +99,27 @@ class Caster:
             mask |= np.where(blocked, np.uint64(1) << np.uint64(index), np.uint64(0))
         return mask
 
+    def blocked_off(self, points: Floats, own: Ints, lights: NDArray[np.void]) -> NDArray[np.uint64]:
+        """The same for points (n, 3) of the grooves of the objects `own` (n,), none of them a mesh."""
+        mask = np.zeros(len(points), np.uint64)
+        if not self.shadows:
+            return mask
+        for index, light in enumerate(lights):
+            point = light["kind"] == POINT
+            ways = light["vector"] - points if point else np.broadcast_to(light["vector"], points.shape)
+            far = np.full(len(points), 1.0 - 1e-9 if point else np.inf)
+            mask |= np.where(self.stopped(points, ways, far, own), np.uint64(1) << np.uint64(index), np.uint64(0))
+        return mask
+
+    def stopped(self, points: Floats, ways: Floats, far: Floats, own: Ints) -> Bools:
+        """Whether another object stands in each of the `ways` (n, 3) from points (n, 3) of the objects `own` (n,), none
+        of them a mesh, before `far` (n,) times that."""
+        blocked = np.zeros(len(points), np.bool_)
+        block(self.objects, np.ascontiguousarray(points), np.ascontiguousarray(ways), far, own, blocked)
+        if self._embree is not None and len(points):
+            blocked |= self._occluded(points, ways, bool(np.isfinite(far).all()))
+        return blocked
+
     def _occluded(self, start: Floats, to_light: Floats, bounded: bool) -> Bools:
         """Whether a mesh stands in the way from each point (n, 3), for lights at a place not beyond it."""
         assert self._embree is not None

@@ -249,7 +249,8 @@ FOOTPRINT = np.dtype(
     [
         ("pixel", "i4"),  # row-major in the tile
         ("frame", "i4"),  # row of FRAME
-        ("blocked", "u8"),  # bit l: another object stands between the surface and light l
+        ("blocked", "u8"),  # bit l: another object stands between the surface and light l,
+        ("torn", "u8"),  # ... or between that and the highest or the lowest points of the grooves, but not both
         ("x", "f8"), ("y", "f8"), ("size", "f8"),  # its square on the screen: left, top, edge; in pixels
     ]
 )  # fmt: skip

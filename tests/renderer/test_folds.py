@@ -190,7 +190,9 @@ def looked_at(plate: Plate, check: Check, kind: str, count: int, profile: list[l
     compiled = compile_scene(scene, (16, 12), PatternCache(), None)
     pattern, camera, lights = compiled.patterns[0], compiled.camera, compiled.lighting.lights
     caster = Caster(compiled.objects, compiled.triangles)
-    seen = footprints(caster, camera, lights, Tile(0, 0, 16, 12), flat_frames(caster, camera.origin), 0)
+    seen = footprints(
+        caster, camera, lights, Tile(0, 0, 16, 12), flat_frames(caster, camera.origin), np.zeros((1, 2)), 0
+    )
     work = layout.work_for(pattern, len(lights))
     found = []
     for footprint in seen.footprints:
