@@ -8,9 +8,9 @@ converged reference. It is a chart a figure: see `service/chart`.
 from __future__ import annotations
 
 import io
-import json
 import math
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,8 +18,9 @@ import numpy as np
 from PIL import Image
 
 import schema
+from bench import figures
 from bench.report import Line, at_least, at_most
-from bench.scenes import EXAMPLES, Floats
+from bench.scenes import EXAMPLES, Floats, load
 from renderer import film
 from service import outputs
 from service.chart import make
@@ -35,6 +36,7 @@ SIZE = (320, 240)
 QUALITY = 88  # of the JPEG pictures
 KB = 1024
 LADDER = (4, 16, 64, 256)  # samples of geometry's curve
+AUTO = (Setting("auto", 64), Setting("auto", 4), Setting("auto", 16))  # where rays go from object to object
 
 INTRODUCTION = """# The report's figures again
 
@@ -69,18 +71,18 @@ class Case(NamedTuple):
     """A figure."""
 
     figure: str
-    said: Said
+    said: Said | None
     note: str
     scene: schema.Scene
     settings: tuple[Setting, ...]  # the first one is what stands in the table
     samples: int  # of geometry, as the report had it
     budget: float  # seconds
+    meshes: Callable[[str], bytes] | None = None
 
 
 def cases() -> list[Case]:
     """The figures of Table 1 that can be compared."""
-    parallel, tiles, vinyl = (_scene(json.loads((EXAMPLES / f"{name}.json").read_text())) for name in
-                              ("parallel", "tiles", "vinyl"))  # fmt: skip
+    parallel, tiles, vinyl = load("parallel"), load("tiles"), load("vinyl")
     auto, rough = Setting("auto", tolerance=0.002), Setting("auto", tolerance=0.02)
     return [
         Case("14", Said(26, 16, 289, 656), "250 parallel grooves", parallel,
@@ -88,35 +90,24 @@ def cases() -> list[Case]:
         Case("15", Said(47, 14, 202, 4232), "crossing grooves", tiles,
              (auto, rough, Setting("area"), *_geometry(8)), 8, 110.0),
         Case("16 (a)", Said(20, 14, 71, 4232), "figure 15's floor from farther away, two near point lights",
-             farther(), (auto, rough, Setting("area"), *_geometry(16)), 16, 110.0),
+             figures.farther(), (auto, rough, Setting("area"), *_geometry(16)), 16, 110.0),
         Case("16 (b)", Said(13, 14, 71, 4232), "the same, by two line samples",
-             farther(), (Setting("lines", 2), Setting("lines", 8), Setting("area"), *_geometry(16)), 16, 110.0),
-        Case("17", Said(46, 16, 387, 656), "figure 14 with one mirror bounce inside the grooves", polished(parallel),
+             figures.farther(), (Setting("lines", 2), Setting("lines", 8), Setting("area"), *_geometry(16)), 16, 110.0),
+        Case("17", Said(46, 16, 387, 656), "figure 14 with one mirror bounce inside the grooves", figures.polished(),
              (Setting("line"), Setting("segment"), *_geometry(8)), 8, 110.0),
         Case("19", Said(31, 486), "records of 500 circles; the report's top left", vinyl,
              (rough, auto, Setting("line"), Setting("csg", 1), Setting("csg", 4),
               Setting("csg", 16), Setting("geometry", 8)), 8, 90.0),
+        Case("20 (b)", Said(164, 149), "a grooved glass, what it reflects", figures.glass(2, transmits=False),
+             (*AUTO, *_geometry(8)), 8, 60.0),
+        Case("20 (c)", Said(290, 149), "what shows through it", figures.glass(6, reflects=False),
+             (*AUTO, *_geometry(8)), 8, 60.0),
+        Case("20 (d)", Said(382, 149), "both", figures.glass(6), (*AUTO, *_geometry(8)), 8, 60.0),
+        Case("11 (2008)", None, "a grooved ball of glass, of the paper of 2008", figures.ball(),
+             (*AUTO, *_geometry(8)), 8, 60.0),
+        Case("21", Said(81, 863), "a house: nine grooved objects, in a pool and in windows", load("house"),
+             (*AUTO, *_geometry(8)), 8, 90.0, lambda name: (EXAMPLES / name).read_bytes()),
     ]  # fmt: skip
-
-
-def farther() -> schema.Scene:
-    """Figure 16: the tiles of figure 15 from farther away, under two near point lights."""
-    told = json.loads((EXAMPLES / "tiles.json").read_text())
-    told["camera"] |= {"origin": [-1.2, -4.6, 2.9], "target": [0.1, 0.3, 0], "fov": 42}
-    told["lights"] = [
-        {"type": "point", "position": [-1.3, -0.6, 0.9], "intensity": [3.2, 2.6, 1.9]},
-        {"type": "point", "position": [1.6, 1.4, 0.8], "intensity": [1.5, 1.9, 2.6]},
-    ]
-    told["render"] |= {"exposure": 2.0}
-    return _scene(told)
-
-
-def polished(parallel: schema.Scene) -> schema.Scene:
-    """Figure 17: the grooves of figure 14, whose stone is a mirror by two fifths."""
-    told = json.loads(parallel.model_dump_json())
-    told["materials"]["stone"] |= {"metallic": 0.4, "roughness": 0}
-    told["render"] |= {"bounces": 1}
-    return _scene(told)
 
 
 def measure() -> tuple[list[Line], dict[str, Any]]:
@@ -127,7 +118,7 @@ def measure() -> tuple[list[Line], dict[str, Any]]:
     about = machine()
     for case in cases():
         print(f"  figure {case.figure} ...", flush=True)
-        plan = Plan(case.scene, SIZE, case.settings, case.budget, _threads())
+        plan = Plan(case.scene, SIZE, case.settings, case.budget, _threads(), case.meshes)
         with tempfile.TemporaryDirectory() as folder:
             found = results(plan, make.measure(plan, Path(folder), lambda: False))
         details[case.figure] = document(found)
@@ -174,7 +165,7 @@ def page(done: list[tuple[Case, Results]], about: dict[str, object]) -> str:
         INTRODUCTION.format(width=SIZE[0], height=SIZE[1], day=str(about["date"])[:10], **about),
         "| figure | | report: s | here: s | report: KB | here: KB |",
         "| --- | --- | --- | --- | --- | --- |",
-        *(_samples_row(case, found) for case, found in done),
+        *(_samples_row(case, case.said, found) for case, found in done if case.said),
         "",
         EQUAL_ERROR,
         "| figure | method | RMSE | s | geometry at the report's samples: RMSE | at equal error |",
@@ -188,8 +179,7 @@ def page(done: list[tuple[Case, Results]], about: dict[str, object]) -> str:
     return "\n".join(parts).rstrip() + "\n"
 
 
-def _samples_row(case: Case, found: Results) -> str:
-    said = case.said
+def _samples_row(case: Case, said: Said, found: Results) -> str:
     start = f"| {case.figure} | {case.note} "
     time_said, memory_said = _gain(said.seconds, said.geometry_seconds), _gain(said.kilobytes, said.geometry_kilobytes)
     ours, theirs = found.rows[0], _geometry_row(case, found)
@@ -273,12 +263,6 @@ def _number(value: float) -> str:
 
 def _file(case: Case) -> str:
     return "figure-" + "".join(c for c in case.figure if c.isalnum()) + ".jpg"
-
-
-def _scene(told: Any) -> schema.Scene:
-    report = schema.check(told)
-    assert report.scene is not None, [problem.line() for problem in report.problems]
-    return report.scene
 
 
 def _threads() -> int:
