@@ -30,6 +30,7 @@ from renderer.tables import CYLINDER, GEOMETRY, MESH, NONE, POINT, RECTANGLE, Ca
 
 OFFSET = 4e-7
 RAYS = 1 << 18  # traced at a time
+TOUCH = 1e-9  # so far before it has left a clear body, relative to where that is, light meets what the body touches
 
 Bools = NDArray[np.bool_]
 
@@ -665,6 +666,10 @@ def go_on(
         goes[k] = True
         if dot(n, direction) < 0.0:
             hits.back[k] = not hits.back[k]
+            at = (hits.point[k, 0], hits.point[k, 1], hits.point[k, 2])
+            back = TOUCH * (1.0 + math.sqrt(dot(at, at))) if within[k] else 0.0  # it may touch another body there
+            for c in range(3):
+                hits.point[k, c] -= back * direction[c]
         for c in range(3):
             directions[k, c] = direction[c]
             weight[k, c] *= colour[c]

@@ -44,6 +44,9 @@ from renderer.tables import Floats, Lighting, Pattern
 LEVEL = 1e-3
 """A ray's slope to the plane is taken for at least this: more level ones run over very many grooves to no end."""
 
+TOUCH = 1e-9
+"""So far before it has left a clear body, relative to where that is in the world, light meets what the body touches."""
+
 
 @callee
 def meet_far(
@@ -75,6 +78,7 @@ def follow(
     """
     lights, curved = lighting.lights, is_curved(frame)
     red = green = blue = 0.0
+    emerged = False
     x, y, w = start
     for left in range(bounces, 0, -1):
         d = direction_to_pattern(frame, way)
@@ -90,8 +94,11 @@ def follow(
                 ray = leaving[gone[0]]
                 gone[0] += 1
                 place = to_world(frame, x, y, w)
+                back = 0.0  # what a body stands on begins where it ends
+                if emerged:
+                    back = TOUCH * (1.0 + math.sqrt(dot(place, place)))
                 for c in range(3):
-                    ray.origin[c], ray.way[c], ray.through[c] = place[c], way[c], through[c]
+                    ray.origin[c], ray.way[c], ray.through[c] = place[c] - back * way[c], way[c], through[c]
                 ray.footprint, ray.number, ray.bounces, ray.object = index, number, left, frame.object
                 ray.within = int(within)
                 ray.clear = max((bottom if within else 0.0) - w, 0.0) / rise
@@ -137,6 +144,7 @@ def follow(
             break
         lobe, u, v = drawn(number, left, seed, px, py)
         way, weight = scatter(material, albedo, n, e, lobe, u, v, within)
+        emerged = dot(n, way) < 0.0 and within
         if dot(n, way) < 0.0:  # through the facet
             within = not within
             x, y, w = x - 2.0 * off * across[0], y - 2.0 * off * across[1], w - 2.0 * off * across[2]

@@ -127,6 +127,21 @@ def test_a_pane_shifts_what_is_behind_it(method: str, plate: Plate, radiance: Ra
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_a_pane_lies_on_a_lamp(method: str, plate: Plate, radiance: Radiance) -> None:
+    """In one plane with it: what lies there is seen, through the pane's face or before it, and nothing behind."""
+    camera = {"origin": [-3, 0.2, 2.5], "target": [0, 0.1, -0.4], "fov": 20, "resolution": RESOLUTION}
+    clear = CLEAR | {"base_color": [1, 1, 1]}
+    scene = plate([], lights=[], materials={"stone": clear, "lamp": LAMP}, camera=camera, render={"bounces": 2})
+    pane = [sheet(0.1, 0.0, [9, 9], "stone"), sheet(-0.7, 0.0, [9, 9], "stone", up=False)]
+    scene["objects"] = [*pane, sheet(-0.7, 5.1, [10, 10], "lamp")]
+    origin, d = view(camera)
+    top = plane(origin, d, 0.1)
+    x = plane(top, refract(d, np.array([0.0, 0.0, 1.0]), 1.0 / IOR), -0.7)[..., 0]
+    colours = np.where((x > 0.1)[..., None], GLOW, 0.0)
+    shows(radiance(scene, method=method, samples=16), colours, 0.15)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_facets_refract(method: str, plate: Plate, radiance: Radiance) -> None:
     """V grooves side by side over a lamp with an edge: each flank shows it shifted to its own side."""
     camera = {"origin": [0, -0.9, 2.8], "target": [0, 0, 0], "fov": 22, "resolution": RESOLUTION}

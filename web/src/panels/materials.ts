@@ -47,6 +47,8 @@ function material(editor: Editor, bind: Binder, name: string, index: number): HT
     share("metallic", "Metallic", 0),
     share("roughness", "Roughness", 1),
     share("specular", "Specular", 1),
+    share("transmission", "Transmission", 0),
+    fields.number({ label: "Refractive index", place: [...place, "ior"], otherwise: 1.5, range: [1.01, 4] }),
     h("div", { class: "buttons" }, [remove]),
   ]);
   details.addEventListener("toggle", () => (details.open ? open.add(name) : open.delete(name)));
