@@ -30,8 +30,13 @@ def sun(*direction: float) -> Json:
     return {"type": "directional", "direction": list(direction), "irradiance": [math.pi, math.pi, math.pi]}
 
 
-def near(scene: Json, picture: Shot, least: float = 0.99, samples: int = SAMPLES) -> NDArray[np.float64]:
-    """The picture of `area`, which agrees with that of `csg` and took at least a part of the pixels itself."""
+def near(
+    scene: Json, picture: Shot, least: float = 0.99, samples: int = SAMPLES, edges: int = 1
+) -> NDArray[np.float64]:
+    """The picture of `area`, which agrees with that of `csg` and took at least a part of the pixels itself.
+
+    What strata miss at an edge goes with samples**-0.75, and with the root of so many edges in a pixel.
+    """
     mine, other = picture(scene, method="area"), picture(scene, method="csg", samples=samples)
     taken, seen = mine.aovs["method"] == AREA, mine.aovs["method"] != 0
     assert taken.sum() >= least * seen.sum()
@@ -40,7 +45,7 @@ def near(scene: Json, picture: Shot, least: float = 0.99, samples: int = SAMPLES
     off = np.abs(values - other.radiance)[taken]
     most, few = max(float(other.radiance.max()), 1e-3), 2.0 * samples**-0.75
     assert off.max(initial=0.0) < 2.0 * few * most
-    assert off.mean() < 0.1 * few * most
+    assert off.mean() < 0.1 * few * most * edges**0.5
     return values
 
 
@@ -68,8 +73,8 @@ def test_far_away_it_is_the_mean(plate: Plate, picture: Shot) -> None:
     """Some forty facets in a footprint, of two families; the plate's edges, where strata are few, are not seen."""
     grooves = [family(V, 0.2, 10), line([-1, 0.07], [3, 0.17], profile=V, repeat={"type": "linear", "count": 10,
                                                                                 "step": [0, 0.2]})]  # fmt: skip
-    camera = {"origin": [0.1, -6, 8], "target": [0, 0, 0], "fov": 8.5, "resolution": [2, 2]}
-    near(plate(grooves, camera=camera), picture, samples=16 * SAMPLES)
+    camera = {"origin": [0.1, -6, 8], "target": [0, 0, 0], "fov": 8.5, "resolution": [3, 3]}
+    near(plate(grooves, camera=camera), picture, samples=16 * SAMPLES, edges=40)
 
 
 def test_a_lamp_next_to_wide_footprints(plate: Plate, picture: Shot) -> None:
