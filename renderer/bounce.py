@@ -122,8 +122,8 @@ class Shapes(Protocol):
     ) -> NDArray[np.uint64]:
         """For each hit (n,) a mask of the lights that something stands before."""
 
-    def stopped(self, points: Floats, ways: Floats, far: Floats, own: Ints) -> NDArray[np.bool_]:
-        """Whether another object stands in each of the `ways` (n, 3) from `points` (n, 3) of the objects `own` (n,)."""
+    def stopped(self, points: Floats, towards: Floats, far: Floats, own: Ints) -> NDArray[np.bool_]:
+        """Whether another object stands in the ways `towards` (n, 3) from `points` (n, 3) of the objects `own` (n,)."""
 
 
 def ask(rays: NDArray[np.void], shapes: Shapes, radiance: Floats) -> None:

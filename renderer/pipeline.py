@@ -231,7 +231,6 @@ class Frame:
         """Shade footprints by the lights alone, and by all of the sky."""
         settings, pattern, footprints, method = self.settings, part.pattern, part.seen.footprints, part.method
         rest = self._of(part)
-
         if settings.method == "csg" and pattern is not BARE:
             self._sample(part, chosen, 0.0)
             return

@@ -19,6 +19,13 @@ Bools = NDArray[np.bool_]
 START = 1e-5  # rays leave a mesh by this part of half the meshes' extent: single precision meets it again
 
 
+def ways(light: np.void, points: Floats) -> tuple[Floats, Floats]:
+    """From points (n, 3) to a light, (n, 3), and how many times that far (n,) it is."""
+    if light["kind"] == POINT:
+        return light["vector"] - points, np.full(len(points), 1.0 - 1e-9)
+    return np.broadcast_to(light["vector"], points.shape), np.full(len(points), np.inf)
+
+
 class Caster:
     """The shapes of a scene, ready for rays."""
 
@@ -83,12 +90,7 @@ class Caster:
         points = origin + np.where(seen, hits["t"], 0.0)[:, None] * directions
         normals = hits["normal"] * np.where(np.sum(hits["normal"] * directions, axis=1) > 0.0, -1.0, 1.0)[:, None]
         for index, light in enumerate(lights):
-            if light["kind"] == POINT:
-                to_light = light["vector"] - points
-                far = np.full(len(hits), 1.0 - 1e-9)
-            else:
-                to_light = np.broadcast_to(light["vector"], points.shape)
-                far = np.full(len(hits), np.inf)
+            to_light, far = ways(light, points)
             own = np.where(seen, hits["object"], -1).astype(np.int32)
             blocked = np.zeros(len(hits), np.bool_)
             block(self.objects, points, np.ascontiguousarray(to_light), far, own, blocked)
@@ -105,19 +107,17 @@ class Caster:
         if not self.shadows:
             return mask
         for index, light in enumerate(lights):
-            point = light["kind"] == POINT
-            ways = light["vector"] - points if point else np.broadcast_to(light["vector"], points.shape)
-            far = np.full(len(points), 1.0 - 1e-9 if point else np.inf)
-            mask |= np.where(self.stopped(points, ways, far, own), np.uint64(1) << np.uint64(index), np.uint64(0))
+            blocked = self.stopped(points, *ways(light, points), own)
+            mask |= np.where(blocked, np.uint64(1) << np.uint64(index), np.uint64(0))
         return mask
 
-    def stopped(self, points: Floats, ways: Floats, far: Floats, own: Ints) -> Bools:
-        """Whether another object stands in each of the `ways` (n, 3) from points (n, 3) of the objects `own` (n,), none
-        of them a mesh, before `far` (n,) times that."""
+    def stopped(self, points: Floats, towards: Floats, far: Floats, own: Ints) -> Bools:
+        """Whether another object stands in each of the ways `towards` (n, 3) from points (n, 3) of the objects `own`
+        (n,), none of them a mesh, before `far` (n,) times that."""
         blocked = np.zeros(len(points), np.bool_)
-        block(self.objects, np.ascontiguousarray(points), np.ascontiguousarray(ways), far, own, blocked)
+        block(self.objects, np.ascontiguousarray(points), np.ascontiguousarray(towards), far, own, blocked)
         if self._embree is not None and len(points):
-            blocked |= self._occluded(points, ways, bool(np.isfinite(far).all()))
+            blocked |= self._occluded(points, towards, bool(np.isfinite(far).all()))
         return blocked
 
     def _occluded(self, start: Floats, to_light: Floats, bounded: bool) -> Bools:

@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 from renderer.kernel import callee, leaf
 from renderer.shading import Vector, between, dot, mirrored, reflect, unit
 
+TOUCH = 1e-9
+"""So far before it has left a clear body, relative to where that is in the world, light meets what the body touches."""
+
 
 @leaf
 def axes(n: Vector) -> tuple[Vector, Vector]:

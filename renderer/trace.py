@@ -24,13 +24,12 @@ from numpy.typing import NDArray
 from renderer.body import Base, Body, facing
 from renderer.geometry.random import drawn, jitter, seed_of, strewn
 from renderer.kernel import borrow, kernel, leaf
-from renderer.scattering import scatter
+from renderer.scattering import TOUCH, scatter
 from renderer.shading import Vector, ambient, dot, lit_by, sky_from, unit
 from renderer.tables import CYLINDER, GEOMETRY, MESH, NONE, POINT, RECTANGLE, Camera, Floats, Ints, Lighting
 
 OFFSET = 4e-7
 RAYS = 1 << 18  # traced at a time
-TOUCH = 1e-9  # so far before it has left a clear body, relative to where that is, light meets what the body touches
 
 Bools = NDArray[np.bool_]
 
@@ -182,7 +181,7 @@ class Truth:
     ) -> None:  # fmt: skip
         """Write the pixels of a tile: their radiance (n, 3) and method (n,).
 
-        samples: at least so many a pixel, in a grid of strata. bounces: so often mirrors are followed. slots: as
+        samples: at least so many a pixel, in a grid of strata. bounces: so often light is followed. slots: as
         CompiledScene.
         """
         columns = math.ceil(math.sqrt(samples))

@@ -27,7 +27,7 @@ from renderer.geometry.solid import (
 )
 from renderer.geometry.spans import BODY, PLANE, Events
 from renderer.kernel import callee
-from renderer.scattering import scatter
+from renderer.scattering import TOUCH, scatter
 from renderer.shading import (
     Vector,
     ambient,
@@ -43,9 +43,6 @@ from renderer.tables import Floats, Lighting, Pattern
 
 LEVEL = 1e-3
 """A ray's slope to the plane is taken for at least this: more level ones run over very many grooves to no end."""
-
-TOUCH = 1e-9
-"""So far before it has left a clear body, relative to where that is in the world, light meets what the body touches."""
 
 
 @callee

@@ -48,7 +48,7 @@ function material(editor: Editor, bind: Binder, name: string, index: number): HT
     share("roughness", "Roughness", 1),
     share("specular", "Specular", 1),
     share("transmission", "Transmission", 0),
-    fields.number({ label: "Refractive index", place: [...place, "ior"], otherwise: 1.5, range: [1.01, 4] }),
+    fields.number({ label: "Index (IOR)", place: [...place, "ior"], otherwise: 1.5, range: [1.01, 4] }),
     h("div", { class: "buttons" }, [remove]),
   ]);
   details.addEventListener("toggle", () => (details.open ? open.add(name) : open.delete(name)));
