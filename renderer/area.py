@@ -28,11 +28,12 @@ from renderer.geometry.colour import EVEN, colour_over, sharpness, turns
 from renderer.geometry.curve import ROUGH, is_curved, straightened
 from renderer.geometry.faces import Faces
 from renderer.geometry.local import BLOCKS, FULL, local_of
-from renderer.geometry.polygon import CORNERS, Counts, area, subtract
+from renderer.geometry.polygon import CORNERS, Counts, area, enclose, overlap, subtract
 from renderer.geometry.sight import (
     Seen,
     bend_of,
     hidden_by,
+    is_over,
     is_plain,
     may_light,
     see,
@@ -61,13 +62,14 @@ class Parts(NamedTuple):
     planes: Floats  # (CORNERS, 3)
     one: Floats  # (CORNERS, 3)
     two: Floats
+    box: Floats  # (4,) of what is seen of a face, pixels
 
 
 @leaf
 def parts_of() -> Parts:
     return Parts(
         np.empty((2, PARTS, CORNERS, 2)), np.empty((2, PARTS), np.int64), np.empty((CORNERS, 3)),
-        np.empty((CORNERS, 3)), np.empty((CORNERS, 3)),
+        np.empty((CORNERS, 3)), np.empty((CORNERS, 3)), np.empty(4),
     )  # fmt: skip
 
 
@@ -77,8 +79,11 @@ def hide(s: int, f: int, which: int, n: int, footprint: np.void, faces: Faces, s
 
     Polygons are in the footprint's square, 0 to 1. Negative where there is no room.
     """
-    for k in range(seen.aways[s]):
-        count = hidden_by(seen.away[s, k], s, f, footprint, faces, seen, parts.planes)
+    for k in range(seen.heres[s]):
+        i = seen.here[s, k]
+        if not overlap(seen.cover[s, i], parts.box):
+            continue
+        count = hidden_by(seen.away[s, i], s, f, footprint, faces, seen, parts.planes)
         if count < 0:
             return -1
         if count == 0:
@@ -93,9 +98,8 @@ def hide(s: int, f: int, which: int, n: int, footprint: np.void, faces: Faces, s
 def show(f: int, footprint: np.void, faces: Faces, seen: Seen, parts: Parts) -> int:
     """Write what of face f lies within the footprint to parts.polygon[0, 0]: how many corners it has."""
     size = footprint.size
-    box = seen.box[f]
     x0, y0 = footprint.x, footprint.y
-    if box[0] >= x0 + size or box[2] <= x0 or box[1] >= y0 + size or box[3] <= y0:
+    if not is_over(seen.box[f], footprint):
         return 0
     # homogeneous, so that what lies behind the eye does no harm
     one, two = parts.one, parts.two
@@ -133,6 +137,10 @@ def show(f: int, footprint: np.void, faces: Faces, seen: Seen, parts: Parts) -> 
             j = count - 1 - i
             for k in range(2):
                 part[i, k], part[j, k] = part[j, k], part[i, k]
+    box = parts.box
+    enclose(part, count, box)
+    for k in range(4):
+        box[k] = (x0 if k & 1 == 0 else y0) + size * box[k]
     return count
 
 
@@ -196,7 +204,7 @@ def area_sampling(
             bend = bend_of(pattern, f, found, faces)
             bent = bend > 0.0
             chorded = chorded or bent
-            cost += seen.aways[eye]
+            cost += seen.heres[eye]
             plain = distant and not bent and is_plain(material) and not is_curved(frame)
             if plain:
                 tinge(f, square, pattern, frame, lighting, material, albedo, found, faces, seen)
@@ -206,14 +214,14 @@ def area_sampling(
                 if light >= 0:
                     if not may_light(light, f, footprint, seen):
                         continue
-                    if seen.aways[light] > 0:
+                    if seen.heres[light] > 0:
                         which = 1
                         for i in range(n):
                             for j in range(parts.corners[0, i]):
                                 parts.polygon[1, i, j, 0] = parts.polygon[0, i, j, 0]
                                 parts.polygon[1, i, j, 1] = parts.polygon[0, i, j, 1]
                             parts.corners[1, i] = parts.corners[0, i]
-                        cost += n * seen.aways[light]
+                        cost += n * seen.heres[light]
                         m = hide(light, f, 1, n, footprint, faces, seen, parts)
                         if m < 0:
                             room = False

@@ -36,6 +36,7 @@ from renderer.geometry.sight import (
     bend_of,
     colour_at,
     hidden_by,
+    is_over,
     is_plain,
     may_light,
     see,
@@ -168,8 +169,8 @@ def hide(
     s: int, f: int, which: int, lines: int, footprint: np.void, faces: Faces, seen: Seen, samples: Samples
 ) -> bool:  # fmt: skip
     """Take what source s does not see of face f out of `samples.part[which]`. False where there is no room."""
-    for k in range(seen.aways[s]):
-        count = hidden_by(seen.away[s, k], s, f, footprint, faces, seen, samples.plane)
+    for k in range(seen.heres[s]):
+        count = hidden_by(seen.away[s, seen.here[s, k]], s, f, footprint, faces, seen, samples.plane)
         if count < 0:
             return False
         if count == 0:
@@ -281,7 +282,7 @@ def line_sampling(
                 if seen.facing[eye, f] <= 0.0:
                     continue
                 box = seen.box[f]
-                if box[0] >= x0 + size or box[2] <= x0 or box[1] >= y0 + size or box[3] <= y0:
+                if not is_over(box, footprint):
                     continue
                 shown = 0
                 for l in range(lines):

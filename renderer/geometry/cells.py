@@ -20,9 +20,9 @@ from typing import NamedTuple
 import numpy as np
 
 from renderer.geometry.domain import Domain
-from renderer.geometry.faces import FACES, Faces, edges, enclose, stand, within
+from renderer.geometry.faces import FACES, Faces, bound, stand, within
 from renderer.geometry.pieces import locate, scale_at
-from renderer.geometry.polygon import Counts, area, subtract
+from renderer.geometry.polygon import Counts, area, edges, subtract
 from renderer.geometry.query import Nearby
 from renderer.geometry.spans import (
     ADD,
@@ -209,7 +209,7 @@ def put_faces(n: int, height: Floats, up: bool, found: int, facet: int, part: in
         faces.plane[at, 0], faces.plane[at, 1], faces.plane[at, 2] = -sign * h0, -sign * h1, sign
         faces.plane[at, 3] = -sign * h2
         faces.tag[at, 0], faces.tag[at, 1], faces.tag[at, 2], faces.tag[at, 3] = found, facet, part, 0
-        enclose(faces, at)
+        bound(faces, at)
         faces.made[0] = at + 1
     return True
 
@@ -367,7 +367,8 @@ def raise_walls(
                 continue
             if max(y0, y1) < box[1] - near or min(y0, y1) > box[3] + near:
                 continue
-        low, high, sides = within(polygon, count, x0, y0, x1, y1, near)
+        sided = edges(polygon, count, 1e-3 * near, strips.sides)
+        low, high, sides = within(strips.sides, sided, x0, y0, x1, y1, near)
         if (high - low) * long <= near or area(polygon, count) <= 1e-15 * size * size:
             continue  # a sliver's heights and sides are rounding
         if n == BESIDE or levels + 2 > LEVELS or stops + 2 > STOPS:

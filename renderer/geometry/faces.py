@@ -17,7 +17,9 @@ from typing import NamedTuple
 import numpy as np
 
 from renderer.geometry.domain import Domain
-from renderer.geometry.polygon import CORNERS, Counts, subtract
+from renderer.geometry.polygon import CORNERS, Counts, edges, overlap, subtract
+from renderer.geometry.regions import BANDS, REMOVALS, Regions
+from renderer.geometry.spans import SIDE
 from renderer.geometry.strips import Strips
 from renderer.kernel import callee, leaf
 from renderer.tables import Floats
@@ -25,6 +27,7 @@ from renderer.tables import Floats
 FACES = 16384
 BESIDE = 256  # strips along one line
 STOPS = 8192  # places along one line where something begins or ends
+EDGE = 1e-12  # of a domain's size: edges no longer than this have no direction
 FLAT_PLANE = -1  # the tag of the base plane's faces
 
 
@@ -40,7 +43,7 @@ class Faces(NamedTuple):
     part: Floats  # (FACES, CORNERS, 2) scratch: what is left of a strip
     part_count: Counts  # (FACES,)
     beside: Floats  # (BESIDE, 4) of a strip along a line: from, to, its heights at the line's ends
-    beside_tag: Counts  # (BESIDE, 4) strip, rank, internal, sides: 1 left, 2 right
+    beside_tag: Counts  # (BESIDE, 5) strip, rank, internal, sides: 1 left, 2 right; its band
     stop: Floats  # (STOPS,)
 
 
@@ -49,37 +52,22 @@ def faces_of() -> Faces:
     return Faces(
         np.zeros(1, np.int64), np.empty((FACES, CORNERS, 3)), np.empty(FACES, np.int64), np.empty((FACES, 4)),
         np.empty((FACES, 6)), np.empty((FACES, 4), np.int64), np.empty((FACES, CORNERS, 2)),
-        np.empty(FACES, np.int64), np.empty((BESIDE, 4)), np.empty((BESIDE, 4), np.int64), np.empty(STOPS),
+        np.empty(FACES, np.int64), np.empty((BESIDE, 4)), np.empty((BESIDE, 5), np.int64), np.empty(STOPS),
     )  # fmt: skip
 
 
 @leaf
-def edges(polygon: Floats, count: int, least: float, planes: Floats) -> int:
-    """The half-planes of a polygon's edges, to the left of each; those of no length have no direction."""
-    n = 0
-    for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        dx, dy = polygon[j, 0] - polygon[i, 0], polygon[j, 1] - polygon[i, 1]
-        long = math.hypot(dx, dy)
-        if long <= least:
-            continue
-        planes[n, 0], planes[n, 1] = -dy / long, dx / long
-        planes[n, 2] = (polygon[i, 0] * dy - polygon[i, 1] * dx) / long
-        n += 1
-    return n
-
-
-@leaf
-def envelope(strips: Strips, domain: Domain, tall: float, faces: Faces) -> bool:
+def envelope(strips: Strips, regions: Regions, domain: Domain, tall: float, faces: Faces) -> bool:
     """Fill `faces` with what of the strips and of the plane is surface. False where there is no room.
 
     tall: the height from the lowest to the highest point of the pattern.
     """
-    n_strips, n_bands = strips.made[0], strips.made[1]
+    n_strips = strips.made[0]
     size = max(domain.slab[0, 1] - domain.slab[0, 0], domain.slab[1, 1] - domain.slab[1, 0])
-    short, least, tie = 1e-12 * size, 1e-15 * size * size, 1e-10 * tall
-    planes = strips.sides
+    short, least, tie = EDGE * size, 1e-15 * size * size, 1e-10 * tall
     faces.made[0] = 0
+    for i in range(n_strips):
+        strips.edges[i] = edges(strips.polygon[i], strips.corners[i], short, strips.edge[i])
     for i in range(-1, n_strips):
         polygon = faces.part[0]
         n = 1
@@ -87,51 +75,66 @@ def envelope(strips: Strips, domain: Domain, tall: float, faces: Faces) -> bool:
             for k in range(domain.made[1]):
                 polygon[k, 0], polygon[k, 1] = domain.outline[k, 0], domain.outline[k, 1]
             faces.part_count[0] = domain.made[1]
-            for j in range(n_bands):
-                k = edges(strips.band[j], strips.band_count[j], short, planes)
-                if k >= 3:
-                    n = subtract(faces.part, faces.part_count, n, planes, k, least, strips.one, strips.two)
-                if n < 0:
-                    return False
-                if n == 0:
+            for j in range(regions.made[BANDS]):
+                n = subtract(
+                    faces.part, faces.part_count, n, regions.edge[BANDS, j], regions.edges[BANDS, j], least,
+                    strips.one, strips.two,
+                )  # fmt: skip
+                if n <= 0:
                     break
         else:
             for k in range(strips.corners[i]):
                 polygon[k, 0], polygon[k, 1] = strips.polygon[i, k, 0], strips.polygon[i, k, 1]
             faces.part_count[0] = strips.corners[i]
             box, height, rank, inner = strips.box[i], strips.height[i], strips.tag[i, 3], strips.tag[i, 4]
-            for j in range(n_strips):
-                other = strips.box[j]
-                if j == i or other[0] >= box[2] or other[2] <= box[0] or other[1] >= box[3] or other[3] <= box[1]:
+            place, band = strips.tag[i, 0], strips.tag[i, 6]
+            # what decides here whatever the heights
+            for j in range(regions.made[BANDS]):
+                if n <= 0 or regions.tag[BANDS, j, 1] <= rank or not overlap(regions.box[BANDS, j], box):
                     continue
-                rank_j, inner_j = strips.tag[j, 3], strips.tag[j, 4]
-                if rank_j < rank or (rank_j == rank and inner_j < inner):
+                n = subtract(
+                    faces.part, faces.part_count, n, regions.edge[BANDS, j], regions.edges[BANDS, j], least,
+                    strips.one, strips.two,
+                )  # fmt: skip
+            for j in range(0 if inner else regions.made[REMOVALS]):
+                tag = regions.tag[REMOVALS, j]
+                if n <= 0 or tag[1] != rank or not overlap(regions.box[REMOVALS, j], box):
                     continue
-                k = edges(strips.polygon[j], strips.corners[j], short, planes)
+                if tag[0] == place and (regions.apart[place] == 1 or tag[2] == band):
+                    continue
+                n = subtract(
+                    faces.part, faces.part_count, n, regions.edge[REMOVALS, j], regions.edges[REMOVALS, j], least,
+                    strips.one, strips.two,
+                )  # fmt: skip
+            for j in range(n_strips if n > 0 else 0):
+                if j == i or not overlap(strips.box[j], box) or strips.tag[j, 3] != rank or strips.tag[j, 4] != inner:
+                    continue
+                if strips.tag[j, 0] == place and (regions.apart[place] == 1 or strips.tag[j, 6] == band):
+                    continue  # they share edges alone
+                k = strips.edges[j]
                 if k < 3:
                     continue
-                if rank_j == rank and inner_j == inner:
-                    sign = 1.0 if inner else -1.0
-                    a = sign * (height[0] - strips.height[j, 0])
-                    b = sign * (height[1] - strips.height[j, 1])
-                    c = sign * (height[2] - strips.height[j, 2])
-                    most = low = a * strips.polygon[i, 0, 0] + b * strips.polygon[i, 0, 1] + c
-                    for m in range(1, strips.corners[i]):
-                        d = a * strips.polygon[i, m, 0] + b * strips.polygon[i, m, 1] + c
-                        most, low = max(most, d), min(low, d)
-                    if most <= tie and low >= -tie:  # the same facet twice
-                        if j > i:
-                            continue
-                    elif most <= 0.0:
+                sign = 1.0 if inner else -1.0
+                a = sign * (height[0] - strips.height[j, 0])
+                b = sign * (height[1] - strips.height[j, 1])
+                c = sign * (height[2] - strips.height[j, 2])
+                most = low = a * strips.polygon[i, 0, 0] + b * strips.polygon[i, 0, 1] + c
+                for m in range(1, strips.corners[i]):
+                    d = a * strips.polygon[i, m, 0] + b * strips.polygon[i, m, 1] + c
+                    most, low = max(most, d), min(low, d)
+                if most <= tie and low >= -tie:  # the same facet twice
+                    if j > i:
                         continue
-                    elif low < 0.0:
-                        planes[k, 0], planes[k, 1], planes[k, 2] = a, b, c
-                        k += 1
-                n = subtract(faces.part, faces.part_count, n, planes, k, least, strips.one, strips.two)
-                if n < 0:
-                    return False
-                if n == 0:
+                elif most <= 0.0:
+                    continue
+                elif low < 0.0:
+                    strips.edge[j, k, 0], strips.edge[j, k, 1], strips.edge[j, k, 2] = a, b, c
+                    k += 1
+                n = subtract(faces.part, faces.part_count, n, strips.edge[j], k, least, strips.one, strips.two)
+                if n <= 0:
                     break
+        if n < 0:
+            return False
         for m in range(n):
             at = faces.made[0]
             if at == FACES:
@@ -150,7 +153,7 @@ def envelope(strips: Strips, domain: Domain, tall: float, faces: Faces) -> bool:
             if faces.tag[at, 1] < 0:
                 faces.tag[at, 0] = FLAT_PLANE
             faces.tag[at, 3] = 0
-            enclose(faces, at)
+            bound(faces, at)
             faces.made[0] = at + 1
     room = True
     for i in range(strips.made[2]):
@@ -159,7 +162,7 @@ def envelope(strips: Strips, domain: Domain, tall: float, faces: Faces) -> bool:
 
 
 @leaf
-def enclose(faces: Faces, at: int) -> None:
+def bound(faces: Faces, at: int) -> None:
     box = faces.box[at]
     for k in range(3):
         box[k], box[3 + k] = math.inf, -math.inf
@@ -196,31 +199,28 @@ def stand(
     faces.plane[at, 0], faces.plane[at, 1], faces.plane[at, 2] = sign * dy, -sign * dx, 0.0
     faces.plane[at, 3] = -sign * (dy * x0 - dx * y0)
     faces.tag[at, 0], faces.tag[at, 1], faces.tag[at, 2], faces.tag[at, 3] = found, facet, part, 1
-    enclose(faces, at)
+    bound(faces, at)
     faces.made[0] = at + 1
     return True
 
 
 @leaf
 def within(
-    polygon: Floats, count: int, x0: float, y0: float, x1: float, y1: float, near: float
+    edge: Floats, count: int, x0: float, y0: float, x1: float, y1: float, near: float
 ) -> tuple[float, float, int]:  # fmt: skip
-    """From where to where, 0 to 1, the line from (x0, y0) to (x1, y1) runs in a polygon or along its edge; and on which
-    side of the line the polygon lies: 1 left, 2 right, 3 both."""
+    """From where to where, 0 to 1, the line from (x0, y0) to (x1, y1) runs in the polygon of these half-planes, of unit
+    length, or along its edge; and on which side of the line the polygon lies: 1 left, 2 right, 3 both."""
     low, high, sides = 0.0, 1.0, 3
     for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        ex, ey = polygon[j, 0] - polygon[i, 0], polygon[j, 1] - polygon[i, 1]
-        long = math.hypot(ex, ey)
-        if long <= 1e-3 * near:
+        a, b, c = edge[i, 0], edge[i, 1], edge[i, 2]
+        d0, d1 = a * x0 + b * y0 + c, a * x1 + b * y1 + c
+        if d0 >= 0.0 and d1 >= 0.0 and (d0 > near or d1 > near):
             continue
-        d0 = (ex * (y0 - polygon[i, 1]) - ey * (x0 - polygon[i, 0])) / long
-        d1 = (ex * (y1 - polygon[i, 1]) - ey * (x1 - polygon[i, 0])) / long
         if abs(d0) <= near and abs(d1) <= near:
             if sides == 3:
-                sides = 1 if ex * (x1 - x0) + ey * (y1 - y0) > 0.0 else 2
+                sides = 1 if b * (x1 - x0) - a * (y1 - y0) > 0.0 else 2
         elif d0 <= near and d1 <= near:
-            high = -1.0
+            return 0.0, -1.0, sides
         elif d0 < 0.0:
             low = max(low, d0 / (d0 - d1))
         elif d1 < 0.0:
@@ -245,6 +245,47 @@ def top_at(faces: Faces, n: int, t: float, side: int) -> int:
     return best
 
 
+@leaf
+def is_calm(faces: Faces, n: int, band: int, tie: float) -> bool:
+    """Whether none of the n strips along a line leaves a step there, where the facets of this band, whose profile is
+    continuous, meet one another or the plane.
+
+    What another groove removes ends there without one if it is no higher than the profile, as then it decides on both
+    sides; and so does what it adds, or at the profile's outer edge if it is no lower.
+    """
+    own_sides, inner, outer, rank = np.int64(0), False, False, np.int64(0)
+    h0 = h1 = 0.0
+    for k in range(n):
+        if faces.beside_tag[k, 4] == band:
+            if faces.beside_tag[k, 3] & own_sides != 0:
+                return False
+            own_sides |= faces.beside_tag[k, 3]
+            rank, h0, h1 = faces.beside_tag[k, 1], faces.beside[k, 2], faces.beside[k, 3]
+            inner, outer = inner or faces.beside_tag[k, 2] == 1, outer or faces.beside_tag[k, 2] == 0
+    if own_sides == 0:
+        return False
+    if own_sides != 3 and (abs(h0) > tie or abs(h1) > tie):
+        return False
+    for k in range(n):
+        if faces.beside_tag[k, 4] == band:
+            continue
+        if faces.beside_tag[k, 1] != rank or faces.beside_tag[k, 3] != 3:
+            return False
+        g0, g1 = faces.beside[k, 2] - h0, faces.beside[k, 3] - h1
+        at_low, at_high = g0 + faces.beside[k, 0] * (g1 - g0), g0 + faces.beside[k, 1] * (g1 - g0)
+        low, high = min(at_low, at_high), max(at_low, at_high)
+        removes = faces.beside_tag[k, 2] == 1
+        if own_sides == 3 and inner and outer:
+            calm = high <= tie
+        elif inner:
+            calm = removes and high <= tie
+        else:
+            calm = removes or low >= -tie
+        if not calm:
+            return False
+    return True
+
+
 @callee
 def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces) -> bool:
     """Add what stands along one of the lines `strips.wall`. False where there is no room."""
@@ -259,7 +300,7 @@ def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces)
             continue
         if max(y0, y1) < box[1] - near or min(y0, y1) > box[3] + near:
             continue
-        low, high, sides = within(strips.polygon[i], strips.corners[i], x0, y0, x1, y1, near)
+        low, high, sides = within(strips.edge[i], strips.edges[i], x0, y0, x1, y1, near)
         if (high - low) * long <= near:
             continue
         if n == BESIDE or stops + 2 > STOPS:
@@ -269,10 +310,12 @@ def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces)
         faces.beside[n, 2] = height[0] * x0 + height[1] * y0 + height[2]
         faces.beside[n, 3] = height[0] * x1 + height[1] * y1 + height[2]
         faces.beside_tag[n, 0], faces.beside_tag[n, 1], faces.beside_tag[n, 2] = i, strips.tag[i, 3], strips.tag[i, 4]
-        faces.beside_tag[n, 3] = sides
+        faces.beside_tag[n, 3], faces.beside_tag[n, 4] = sides, strips.tag[i, 6]
         faces.stop[stops], faces.stop[stops + 1] = low, high
         stops += 2
         n += 1
+    if strips.wall_tag[wall, 1] == SIDE and is_calm(faces, n, strips.wall_tag[wall, 3], tie):
+        return True
     for i in range(n):
         for j in range(-1, i):
             g0, g1 = faces.beside[i, 2], faces.beside[i, 3]
@@ -296,7 +339,11 @@ def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces)
             faces.stop[stops], faces.stop[stops + 1] = min(max(t0, 0.0), 1.0), min(max(t1, 0.0), 1.0)
             stops += 2
             walls += 1
-    faces.stop[:stops].sort()
+    for k in range(1, stops):
+        for i in range(k, 0, -1):
+            if faces.stop[i - 1] <= faces.stop[i]:
+                break
+            faces.stop[i - 1], faces.stop[i] = faces.stop[i], faces.stop[i - 1]
     for k in range(stops - 1):
         a, b = faces.stop[k], faces.stop[k + 1]
         if (b - a) * long <= near:

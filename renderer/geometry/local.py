@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 
 from renderer.geometry.cells import Cells, carve, cells_of
 from renderer.geometry.domain import Domain, aim, domain_of, settle, spread
-from renderer.geometry.faces import Faces, envelope, faces_of
+from renderer.geometry.faces import EDGE, Faces, envelope, faces_of
 from renderer.geometry.query import Nearby, find, nearby
+from renderer.geometry.regions import BANDS, REMOVALS, Regions, regions_of, unite
 from renderer.geometry.strips import Strips, divide, lay, overhangs, strips_of
 from renderer.geometry.view import GRAZING, View, on_plane, slope_at, view_of
 from renderer.kernel import fixed, leaf
-from renderer.tables import FOOTPRINT, Camera, Floats, Pattern
+from renderer.tables import FOOTPRINT, SCALE_CONSTANT, Camera, Floats, Pattern
 
 CAPACITY = fixed(2048)  # pieces near a domain
 CHORD = 4.0  # how far chords leave arcs, in widths of the footprint and tolerances; the error is about a fifth of it
@@ -32,6 +33,7 @@ class Local(NamedTuple):
     found: Nearby
     domain: Domain
     strips: Strips
+    regions: Regions
     cells: Cells
     faces: Faces
     square: NDArray[np.void]  # (1,) FOOTPRINT: what the faces are made for
@@ -41,8 +43,8 @@ class Local(NamedTuple):
 @leaf
 def local_of(pattern: Pattern) -> Local:
     return Local(
-        nearby(pattern, CAPACITY), domain_of(), strips_of(), cells_of(), faces_of(), np.zeros(1, FOOTPRINT),
-        np.full((len(BLOCKS), 3), math.inf),
+        nearby(pattern, CAPACITY), domain_of(), strips_of(), regions_of(), cells_of(), faces_of(),
+        np.zeros(1, FOOTPRINT), np.full((len(BLOCKS), 3), math.inf),
     )  # fmt: skip
 
 
@@ -134,15 +136,30 @@ def make(pattern: Pattern, size: float, few: int, tolerance: float, most: int, l
     for i in range(max(count, 0)):
         undercut = undercut or overhangs(pattern, pattern.grooves[pattern.pieces[found.piece[i]].groove].profile)
     strips.made[0] = strips.made[1] = strips.made[2] = 0
+    local.regions.made[0] = local.regions.made[1] = 0
+    short = EDGE * max(rim[0, 1] - rim[0, 0], rim[1, 1] - rim[1, 0])
     for i in range(max(count, 0)):
         if not room:
             break
         x, y = found.shift[i, 0], found.shift[i, 1]
+        first, band = strips.made[0], strips.made[1]
         chunks = divide(pattern, found.piece[i], x, y, rim, CHORD * tolerance * size, strips.chunks)
         room = chunks >= 0
         for j in range(chunks):
             room = room and strips.made[0] <= most
             room = room and lay(pattern, found.piece[i], i, strips.chunks[j], domain, stepped, strips)
+        if room:
+            piece = pattern.pieces[found.piece[i]]
+            straight = piece.curvature == 0.0 and pattern.grooves[piece.groove].scale_kind == SCALE_CONSTANT
+            local.regions.apart[i] = 0
+            unite(
+                BANDS, i, strips.band, strips.band_count, band, strips.made[1], straight, piece.tx, piece.ty, short,
+                domain, strips, local.regions,
+            )  # fmt: skip
+            unite(
+                REMOVALS, i, strips.polygon, strips.corners, first, strips.made[0], straight, piece.tx, piece.ty,
+                short, domain, strips, local.regions,
+            )  # fmt: skip
     if room and undercut:
         return carve(pattern, found, strips, domain, local.cells, faces)
-    return room and envelope(strips, domain, pattern.height + pattern.depth, faces)
+    return room and envelope(strips, local.regions, domain, pattern.height + pattern.depth, faces)

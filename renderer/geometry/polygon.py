@@ -5,6 +5,8 @@ A half-plane (a, b, c) is where a x + b y + c >= 0. Polygons run anticlockwise, 
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +21,66 @@ FULL = -1
 """What a list of polygons says that has run out of room."""
 
 Counts = NDArray[np.int64]
+
+
+@leaf
+def edges(polygon: Floats, count: int, least: float, planes: Floats) -> int:
+    """The half-planes of a polygon's edges, to the left of each; those of no length have no direction."""
+    n = 0
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        dx, dy = polygon[j, 0] - polygon[i, 0], polygon[j, 1] - polygon[i, 1]
+        long = math.hypot(dx, dy)
+        if long <= least:
+            continue
+        planes[n, 0], planes[n, 1] = -dy / long, dx / long
+        planes[n, 2] = (polygon[i, 0] * dy - polygon[i, 1] * dx) / long
+        n += 1
+    return n
+
+
+@leaf
+def enclose(polygon: Floats, count: int, box: Floats) -> None:
+    """Write its least and greatest coordinates to box: x0, y0, x1, y1."""
+    box[0] = box[1] = math.inf
+    box[2] = box[3] = -math.inf
+    for k in range(count):
+        box[0], box[1] = min(box[0], polygon[k, 0]), min(box[1], polygon[k, 1])
+        box[2], box[3] = max(box[2], polygon[k, 0]), max(box[3], polygon[k, 1])
+
+
+@leaf
+def overlap(one: Floats, two: Floats) -> bool:
+    """Whether two boxes have a part in common."""
+    return bool(one[0] < two[2] and one[2] > two[0] and one[1] < two[3] and one[3] > two[1])
+
+
+@leaf
+def divide(
+    polygon: Floats, count: int, a: float, b: float, c: float, inside: Floats, outside: Floats
+) -> tuple[int, int]:
+    """Write the parts of a polygon within a half-plane and beyond it: how many corners each has."""
+    n = m = 0
+    x0, y0 = polygon[count - 1, 0], polygon[count - 1, 1]
+    d0 = a * x0 + b * y0 + c
+    for i in range(count):
+        x1, y1 = polygon[i, 0], polygon[i, 1]
+        d1 = a * x1 + b * y1 + c
+        if (d0 > 0.0 and d1 < 0.0) or (d0 < 0.0 and d1 > 0.0):
+            t = d0 / (d0 - d1)
+            x, y = x0 + t * (x1 - x0), y0 + t * (y1 - y0)
+            inside[n, 0], inside[n, 1] = x, y
+            outside[m, 0], outside[m, 1] = x, y
+            n += 1
+            m += 1
+        if d1 >= 0.0:
+            inside[n, 0], inside[n, 1] = x1, y1
+            n += 1
+        if d1 <= 0.0:
+            outside[m, 0], outside[m, 1] = x1, y1
+            m += 1
+        x0, y0, d0 = x1, y1, d1
+    return n if n >= 3 else 0, m if m >= 3 else 0
 
 
 @leaf
@@ -94,33 +156,43 @@ def subtract(
         if apart:
             continue
         if cut:
-            for j in range(count):
-                one[j, 0], one[j, 1] = polygon[j, 0], polygon[j, 1]
-            inside = clipped(one, count, planes, 0, last, two)
-            if inside == 0 or area(one, inside) <= least:
-                continue
+            before = n
             for j in range(count):
                 one[j, 0], one[j, 1] = polygon[j, 0], polygon[j, 1]
             for k in range(last):
                 a, b, c = planes[k, 0], planes[k, 1], planes[k, 2]
-                outside = clip(one, count, -a, -b, -c, two)
-                if outside and area(two, outside) > least:
+                least_of = a * one[0, 0] + b * one[0, 1] + c
+                for j in range(1, count):
+                    least_of = min(least_of, a * one[j, 0] + b * one[j, 1] + c)
+                if least_of >= 0.0:
+                    continue
+                if n == len(polygons):
+                    return FULL
+                count, outside = divide(one, count, a, b, c, two, polygons[n])
+                one, two = two, one
+                if outside and area(polygons[n], outside) > least:
                     begin = 0
-                    while begin < outside - 2:  # those with many corners in two, along a diagonal
-                        end = min(begin + MOST - 2, outside - 1)
-                        if n == len(polygons):
-                            return FULL
-                        polygons[n, 0, 0], polygons[n, 0, 1] = two[0, 0], two[0, 1]
-                        for j in range(begin + 1, end + 1):
-                            polygons[n, j - begin, 0], polygons[n, j - begin, 1] = two[j, 0], two[j, 1]
-                        counts[n] = end - begin + 1
-                        n += 1
-                        begin = end - 1
-                count = clip(one, count, a, b, c, two)
-                for j in range(count):
-                    one[j, 0], one[j, 1] = two[j, 0], two[j, 1]
+                    if outside > MOST:  # in two or more, along diagonals
+                        for j in range(outside):
+                            two[j, 0], two[j, 1] = polygons[n, j, 0], polygons[n, j, 1]
+                        while outside - begin > MOST:
+                            for j in range(1, MOST):
+                                polygons[n, j, 0], polygons[n, j, 1] = two[begin + j, 0], two[begin + j, 1]
+                            counts[n] = MOST
+                            n += 1
+                            begin += MOST - 2
+                            if n == len(polygons):
+                                return FULL
+                            polygons[n, 0, 0], polygons[n, 0, 1] = two[0, 0], two[0, 1]
+                        for j in range(1, outside - begin):
+                            polygons[n, j, 0], polygons[n, j, 1] = two[begin + j, 0], two[begin + j, 1]
+                    counts[n] = outside - begin
+                    n += 1
                 if count == 0:
                     break
+            if count == 0 or area(one, count) <= least:
+                n = before
+                continue
         n -= 1  # polygon i is replaced by the last
         for j in range(counts[n]):
             polygons[i, j, 0], polygons[i, j, 1] = polygons[n, j, 0], polygons[n, j, 1]

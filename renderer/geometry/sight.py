@@ -43,6 +43,9 @@ class Seen(NamedTuple):
     facing: Floats  # (sources, FACES) positive where a face is turned towards the source
     away: Counts  # (sources, FACES) the faces turned away from a source
     aways: Counts  # (sources,) how many
+    cover: Floats  # (sources, FACES, 4) x0, y0, x1, y1 on the screen of what each of those may keep from it
+    here: Counts  # (sources, FACES) those of them, by their places there, that may do so in one footprint
+    heres: Counts  # (sources,) how many
     half: Counts  # (sources, FACES, 2) the first of a face's half-planes and how many; -1: not made yet
     halves: Floats  # (HALVES, 4) g and a: g . (x, y, 1) + a near(x, y) >= 0
     tint: Floats  # (FACES, lights + 1, 3) colours of a face that has the same everywhere
@@ -55,7 +58,8 @@ def seen_of(lights: int) -> Seen:
     return Seen(
         np.zeros(1, np.int64), np.empty((3, 3)), np.empty((3, 3)), np.empty((n, 4)), np.empty((FACES, CORNERS, 3)),
         np.empty((FACES, 4)), np.empty((FACES, 3)), np.empty((n, FACES)), np.empty((n, FACES), np.int64),
-        np.zeros(n, np.int64), np.full((n, FACES, 2), -1, np.int64), np.empty((HALVES, 4)),
+        np.zeros(n, np.int64), np.empty((n, FACES, 4)), np.empty((n, FACES), np.int64), np.zeros(n, np.int64),
+        np.full((n, FACES, 2), -1, np.int64), np.empty((HALVES, 4)),
         np.empty((FACES, n, 3)), np.full(FACES, -1, np.int64),
     )  # fmt: skip
 
@@ -72,6 +76,8 @@ def see(
     held, view = surround(pattern, frame, footprint, flat, camera, lights, tolerance, most, local)
     if held == MADE and not look(pattern, frame, view, local.square[0], lights, local.faces, seen):
         return FULL
+    if held != FULL:
+        draw_near(footprint, seen)
     return held
 
 
@@ -137,9 +143,10 @@ def look(
             continue
         for k in range(3):
             seen.near[j, k] = -(plane[0] * ray[0, k] + plane[1] * ray[1, k] + plane[2] * ray[2, k]) / facing
-        if facing < 0.0:
-            continue
+    low = math.inf
+    for j in range(n):
         seen.tinted[j] = -1
+        low = min(low, faces.box[j, 2])
         box = seen.box[j]
         box[0] = box[1] = math.inf
         box[2] = box[3] = -math.inf
@@ -148,13 +155,61 @@ def look(
             corner = seen.corner[j, i]
             for k in range(3):
                 corner[k] = back[k, 0] * x0 + back[k, 1] * x1 + back[k, 2] * x2
-            if corner[2] > 0.0:
-                x, y = corner[0] / corner[2], corner[1] / corner[2]
-                box[0], box[1], box[2], box[3] = min(box[0], x), min(box[1], y), max(box[2], x), max(box[3], y)
-            else:
-                box[0] = box[1] = -math.inf
-                box[2] = box[3] = math.inf
+            widen(box, corner[0], corner[1], corner[2])
+    for s in range(eye + 1):
+        source = seen.source[s]
+        for i in range(seen.aways[s]):
+            j = seen.away[s, i]
+            cover = seen.cover[s, i]
+            for k in range(4):
+                cover[k] = seen.box[j, k]
+            if s == eye:
+                continue
+            for m in range(faces.corners[j]):  # and where its shadow falls at the lowest
+                x0, x1, x2 = faces.corner[j, m, 0], faces.corner[j, m, 1], faces.corner[j, m, 2]
+                r0, r1, r2 = source[0] - source[3] * x0, source[1] - source[3] * x1, source[2] - source[3] * x2
+                t = (x2 - low) / r2 if r2 > 0.0 else math.inf
+                if not t < math.inf:
+                    cover[0] = cover[1] = -math.inf
+                    cover[2] = cover[3] = math.inf
+                    break
+                x0, x1, x2 = x0 - t * r0 - d0, x1 - t * r1 - d1, low - d2
+                widen(
+                    cover, back[0, 0] * x0 + back[0, 1] * x1 + back[0, 2] * x2,
+                    back[1, 0] * x0 + back[1, 1] * x1 + back[1, 2] * x2,
+                    back[2, 0] * x0 + back[2, 1] * x1 + back[2, 2] * x2,
+                )  # fmt: skip
     return True
+
+
+@leaf
+def widen(box: Floats, a: float, b: float, c: float) -> None:
+    """Let a box of the screen hold the point (a, b, c), homogeneous; behind the eye it may be anywhere."""
+    if c > 0.0:
+        x, y = a / c, b / c
+        box[0], box[1], box[2], box[3] = min(box[0], x), min(box[1], y), max(box[2], x), max(box[3], y)
+    else:
+        box[0] = box[1] = -math.inf
+        box[2] = box[3] = math.inf
+
+
+@leaf
+def is_over(box: Floats, footprint: np.void) -> bool:
+    """Whether a box of the screen meets a footprint."""
+    x, y, size = footprint.x, footprint.y, footprint.size
+    return bool(box[0] < x + size and box[2] > x and box[1] < y + size and box[3] > y)
+
+
+@leaf
+def draw_near(footprint: np.void, seen: Seen) -> None:
+    """Fill `seen.here`."""
+    for s in range(len(seen.aways)):
+        count = 0
+        for i in range(seen.aways[s]):
+            if is_over(seen.cover[s, i], footprint):
+                seen.here[s, count] = i
+                count += 1
+        seen.heres[s] = count
 
 
 @leaf
@@ -172,7 +227,7 @@ def halves_of(s: int, j: int, faces: Faces, seen: Seen) -> bool:
     seen.halves[n, 3] = plane[0] * eye[0] + plane[1] * eye[1] + plane[2] * eye[2] + plane[3]
     n += 1
     box = faces.box[j]
-    short = 1e-12 * max(box[3] - box[0], box[4] - box[1], box[5] - box[2])
+    short = 1e-9 * max(box[3] - box[0], box[4] - box[1], box[5] - box[2])
     for i in range(count):
         a, b = faces.corner[j, i], faces.corner[j, i + 1 if i + 1 < count else 0]
         e0, e1, e2 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -215,10 +270,22 @@ def may_hide(s: int, f: int, b: int, faces: Faces, seen: Seen) -> bool:
 
 
 @leaf
+def is_before(f: int, b: int, faces: Faces) -> bool:
+    """Whether any of face b stands out of the plane of face f."""
+    plane = faces.plane[f]
+    least = 1e-12 * (abs(plane[0]) + abs(plane[1]) + abs(plane[2]) + abs(plane[3]))
+    for i in range(faces.corners[b]):
+        corner = faces.corner[b, i]
+        if plane[0] * corner[0] + plane[1] * corner[1] + plane[2] * corner[2] + plane[3] > least:
+            return True
+    return False
+
+
+@leaf
 def hidden_by(b: int, s: int, f: int, footprint: np.void, faces: Faces, seen: Seen, planes: Floats) -> int:
     """Write the half-planes of what face b keeps from source s of face f, in the footprint's square, 0 to 1, to
     `planes` (CORNERS, 3): how many; 0 where it keeps nothing. Negative where there is no room."""
-    if b == f or not may_hide(s, f, b, faces, seen):
+    if b == f or not may_hide(s, f, b, faces, seen) or not is_before(f, b, faces):
         return 0
     if seen.half[s, b, 0] < 0 and not halves_of(s, b, faces, seen):
         return -1

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from renderer.geometry.domain import Domain
 from renderer.geometry.pieces import point_at, scale_at, tangent_at
-from renderer.geometry.polygon import CORNERS, Counts, clipped
+from renderer.geometry.polygon import CORNERS, Counts, clipped, enclose
 from renderer.geometry.spans import BODY, CAP_FINISH, CAP_START, END, SIDE, TAIL_FINISH, TAIL_START, next_stop
 from renderer.kernel import callee, leaf
 from renderer.tables import CORNER, FLAT, PROFILE, SCALE_CONSTANT, SCALE_SINE, Floats, Pattern
@@ -51,13 +51,16 @@ class Strips(NamedTuple):
     box: Floats  # (STRIPS, 4) p0, q0, p1, q1
     height: Floats  # (STRIPS, 3) w = h0 p + h1 q + h2; of a trapezoid: its lower side
     roof: Floats  # (STRIPS, 3) the upper side of a trapezoid
-    tag: Counts  # (STRIPS, 6) place of the piece in `Nearby`, facet, part, rank, whether the facet is internal; of a
-    # trapezoid, whether it removes, and its row of `Pattern.parts` + 1; else 0
+    tag: Counts  # (STRIPS, 7) place of the piece in `Nearby`, facet, part, rank, whether the facet is internal; of a
+    # trapezoid, whether it removes, and its row of `Pattern.parts` + 1, else 0; its band
+    edge: Floats  # (STRIPS, CORNERS, 3) the half-planes of its edges
+    edges: Counts  # (STRIPS,) how many
     band: Floats  # (STRIPS, CORNERS, 2) what the strips cover together
     band_count: Counts  # (STRIPS,)
     band_rank: Counts  # (STRIPS,)
     wall: Floats  # (WALLS, 4) p0, q0, p1, q1
-    wall_tag: Counts  # (WALLS, 3) as `tag`: piece, facet or SIDE or END, part; of what overhangs the profile's point
+    wall_tag: Counts  # (WALLS, 4) as `tag`: piece, facet or SIDE or END, part; of what overhangs the profile's point;
+    # its band
     one: Floats  # (CORNERS, 2) for clipping
     two: Floats
     sides: Floats  # (CORNERS, 3) half-planes
@@ -68,9 +71,10 @@ class Strips(NamedTuple):
 def strips_of() -> Strips:
     return Strips(
         np.zeros(3, np.int64), np.zeros(CHUNKS, CHUNK), np.empty((STRIPS, CORNERS, 2)), np.empty(STRIPS, np.int64),
-        np.empty((STRIPS, 4)), np.empty((STRIPS, 3)), np.empty((STRIPS, 3)), np.empty((STRIPS, 6), np.int64),
+        np.empty((STRIPS, 4)), np.empty((STRIPS, 3)), np.empty((STRIPS, 3)), np.empty((STRIPS, 7), np.int64),
+        np.empty((STRIPS, CORNERS, 3)), np.empty(STRIPS, np.int64),
         np.empty((STRIPS, CORNERS, 2)), np.empty(STRIPS, np.int64), np.empty(STRIPS, np.int64), np.empty((WALLS, 4)),
-        np.empty((WALLS, 3), np.int64), np.empty((CORNERS, 2)), np.empty((CORNERS, 2)), np.empty((CORNERS, 3)),
+        np.empty((WALLS, 4), np.int64), np.empty((CORNERS, 2)), np.empty((CORNERS, 2)), np.empty((CORNERS, 3)),
         np.empty((2, 2, 3)),
     )  # fmt: skip
 
@@ -319,6 +323,7 @@ def divide(
 def keep_wall(
     walls: Floats, tags: Counts, n: int, planes: Floats, count: int, half: int, bx: float, by: float, bc: float,
     domain: Domain, x0: float, y0: float, x1: float, y1: float, near: float, found: int, facet: int, part: int,
+    band: int,
 ) -> int:  # fmt: skip
     """Add the part of a line from (x0, y0) to (x1, y1) that is within the half-planes and the domain: how many."""
     low, high = 0.0, 1.0
@@ -349,7 +354,7 @@ def keep_wall(
         return -1
     walls[n, 0], walls[n, 1] = x0 + low * (x1 - x0), y0 + low * (y1 - y0)
     walls[n, 2], walls[n, 3] = x0 + high * (x1 - x0), y0 + high * (y1 - y0)
-    tags[n, 0], tags[n, 1], tags[n, 2] = found, facet, part
+    tags[n, 0], tags[n, 1], tags[n, 2], tags[n, 3] = found, facet, part, band
     return n + 1
 
 
@@ -374,12 +379,9 @@ def rim(chunk: np.void, beta: float, w: float, slope: float, ends: Floats) -> No
 def tag_strip(strips: Strips, at: int, corners: int, found: int, facet: int, part: int, rank: int, inner: bool) -> None:
     polygon, box, tag = strips.polygon[at], strips.box[at], strips.tag[at]
     strips.corners[at] = corners
-    box[0] = box[1] = math.inf
-    box[2] = box[3] = -math.inf
-    for k in range(corners):
-        box[0], box[1] = min(box[0], polygon[k, 0]), min(box[1], polygon[k, 1])
-        box[2], box[3] = max(box[2], polygon[k, 0]), max(box[3], polygon[k, 1])
+    enclose(polygon, corners, box)
     tag[0], tag[1], tag[2], tag[3], tag[4], tag[5] = found, facet, part, rank, 1 if inner else 0, 0
+    tag[6] = strips.made[1] - 1
 
 
 @leaf
@@ -589,7 +591,7 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, domain: Domain,
         walls = keep_wall(
             strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, chunk.half, bx, by, bc, domain,
             lower[0, 0], lower[0, 1], lower[1, 0], lower[1, 1], near, found,
-            j if upright or undercut else SIDE, chunk.part,
+            j if upright or undercut else SIDE, chunk.part, bands,
         )  # fmt: skip
     for end in range(2):
         if (chunk.start if end == 0 else chunk.finish) == 0:
@@ -598,7 +600,7 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, domain: Domain,
         b0, b1 = chunk.ends[end, 4] * profile.left, chunk.ends[end, 4] * profile.right
         walls = keep_wall(
             strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, chunk.half, bx, by, bc, domain,
-            x + b0 * nx, y + b0 * ny, x + b1 * nx, y + b1 * ny, near, found, END, chunk.part,
+            x + b0 * nx, y + b0 * ny, x + b1 * nx, y + b1 * ny, near, found, END, chunk.part, bands,
         )  # fmt: skip
     symmetric = True
     for j in range(profile.count):
@@ -615,6 +617,7 @@ def lay(pattern: Pattern, item: int, found: int, chunk: np.void, domain: Domain,
             walls = keep_wall(
                 strips.wall, strips.wall_tag, walls, chunk.planes, chunk.count, 0, bx, by, bc, domain,
                 chunk.x, chunk.y, chunk.x + reach * dx, chunk.y + reach * dy, near, found, END, chunk.part,
+                bands,
             )  # fmt: skip
     strips.made[2] = walls
     return walls >= 0

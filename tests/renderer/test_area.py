@@ -58,6 +58,17 @@ def test_shares_sum_to_one(plate: Plate, picture: Shot) -> None:
     assert made.aovs["error"].max() < 1e-6
 
 
+def test_scattered_scratches(plate: Plate, picture: Shot) -> None:
+    """Where they cross, faces get edges that rounding alone has made; those bound nothing: shares still sum to one."""
+    scratch = {"type": "scratch", "width": 0.006, "depth": 0.003, "lip_width": 0.002, "lip_height": 0.001}
+    repeat = {"type": "scatter", "count": 100, "seed": 5, "bounds": [0, 0, 2, 2], "angle": [0, 360]}
+    groove = {"path": {"type": "polyline", "points": [[-0.1, 0], [0.1, 0]]}, "profile": scratch, "repeat": repeat}
+    scene = plate([groove], lights=[sun(1, 0.45, -0.9)], camera={"fov": 20, "resolution": [320, 240]})
+    made = picture(scene, method="area")
+    assert (made.aovs["method"][made.aovs["method"] != 0] == AREA).all()
+    assert made.aovs["error"].max() < 1e-6
+
+
 def test_everything_at_once(plate: Plate, picture: Shot) -> None:
     near(plate(MIXED, materials=PALETTE), picture)
 
