@@ -227,6 +227,7 @@ def halves_of(s: int, j: int, faces: Faces, seen: Seen) -> bool:
     seen.halves[n, 3] = plane[0] * eye[0] + plane[1] * eye[1] + plane[2] * eye[2] + plane[3]
     n += 1
     box = faces.box[j]
+    # shorter edges may be rounding's alone, and lead anywhere
     short = 1e-9 * max(box[3] - box[0], box[4] - box[1], box[5] - box[2])
     for i in range(count):
         a, b = faces.corner[j, i], faces.corner[j, i + 1 if i + 1 < count else 0]
