@@ -3,7 +3,8 @@
 Right for every case, however slow. `auto` sends it what no cheaper method takes, with a tolerance. Then a footprint
 near one or two grooves whose corners and first few samples all fall on one facet, all lit alike, is left at those: what
 one straight edge cuts off a footprint has one of its corners in it. Any other gets as many as bring the predicted error
-within the tolerance: that of a mean of strata, whose variances the differences of neighbours tell.
+within the tolerance: that of a mean of strata, whose variances the differences of neighbours tell. A part of a pixel,
+as next to an outline, gets as many fewer as it is smaller: of a pixel's parts the errors are independent.
 """
 
 from __future__ import annotations
@@ -114,17 +115,21 @@ def csg(
         share = samples if tolerance > 0.0 else max(int(math.ceil(samples * footprint.size * footprint.size)), 1)
         across = int(math.ceil(math.sqrt(share)))
         down = (share + across - 1) // across
-        most = MOST if bounces == 0 else max(across, FIRST)  # rays from facet to facet take their time
+        part = min(footprint.size, 1.0)
+        begin, probe = max(int(math.ceil(FIRST * part)), 2), max(int(math.ceil(PROBE * part)), 2)
+        most = max(int(math.ceil(MOST * part)), 2)
+        if bounces > 0:  # rays from facet to facet take their time
+            most = max(across, begin)
         corners = 0
         target = 0.0
         if tolerance > 0.0:
-            across = down = FIRST
+            across = down = begin
             if 0 <= shared <= FEW and bounces == 0:
-                across, down, corners = PROBE, PROBE, 4
+                across, down, corners = probe, probe, 4
             target = tolerance
             if curved and straightened(pattern, frame, view.p, view.q, footprint.blocked, lights) > ROUGH:
                 target = max(tolerance, GRAINY)
-            target *= SURE * white(lighting, to_world(frame, view.p, view.q, 0.0))
+            target *= SURE / part * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0
         taken = looked = 0
@@ -245,10 +250,10 @@ def csg(
                 if error <= target or across >= most:
                     break
             if corners > 0:
-                across, down, corners = FIRST, FIRST, 0
+                across, down, corners = begin, begin, 0
                 continue
             across = int(math.ceil(1.05 * across * min((error / target) ** (2.0 / 3.0), float(MOST))))
-            if sparing and across > MOST:
+            if sparing and across > most:
                 taken = 0
                 break
             across = down = min(across, most)
@@ -266,7 +271,7 @@ def csg(
         radiance[index, 0] += red / taken
         radiance[index, 1] += green / taken
         radiance[index, 2] += blue / taken
-        radiance[index, 3] += error / SURE
+        radiance[index, 3] += error / SURE * part
         if curved:
             radiance[index, 3] += unsure(frame, max(p0 - fp0, fp1 - p1, q0 - fq0, fq1 - q1, pattern.width))
         radiance[index, 4] += float(looked) * max(shared, 1)

@@ -37,7 +37,7 @@ from renderer.trace import Truth
 
 TILE = 64  # pixels
 RAYS = 1 << 16  # from one object to others, at a time
-FEW_STRIPS = 128  # `auto` samples where more are near: then that is faster
+FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
 

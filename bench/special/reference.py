@@ -26,6 +26,7 @@ from service.chart.settings import REFERENCE, Setting
 FOLDER = Path(__file__).resolve().parents[1] / "out" / "references"
 ENOUGH = 1e-4  # RMSE of a reference
 LEAST, MOST = 3, 12  # passes
+TILE = 8  # small, so that a small picture has work for all threads
 
 Mask = measure.Mask
 
@@ -41,7 +42,7 @@ def reference(
     def draw(seed: int) -> pipeline.Picture:
         return pipeline.render(
             Setting(method, samples).scene(scene, seed), method=method, samples=samples, resolution=resolution,
-            meshes=meshes, patterns=patterns, solids=solids,
+            meshes=meshes, patterns=patterns, solids=solids, tile=TILE,
         )  # fmt: skip
 
     return converged(scene, f"{method} {samples} {resolution}", draw, passes, enough)

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from renderer.geometry.domain import Domain
-from renderer.geometry.faces import FACES, Faces, bound, stand, within
+from renderer.geometry.faces import EDGE, FACES, Faces, bound, stand, within
 from renderer.geometry.pieces import locate, scale_at
 from renderer.geometry.polygon import Counts, area, edges, subtract
 from renderer.geometry.query import Nearby
@@ -130,7 +130,7 @@ def peel(
     up: it looks up. index: of its cell; NO_CELL: the plane, which counts as added. size: of the domain. tall: from the
     lowest to the highest point of the pattern.
     """
-    short, least, tie = 1e-12 * size, 1e-15 * size * size, 1e-10 * tall
+    short, least, tie = EDGE * size, 1e-15 * size * size, 1e-10 * tall
     planes = strips.sides
     if area(polygon, count) <= least:  # a sliver's edges have any direction, and would hide anything
         return 0
@@ -240,7 +240,7 @@ def carve(
             if n <= 0:
                 break
             if strips.band_rank[i] == rank and rank != lowest:
-                k = edges(strips.band[i], strips.band_count[i], 1e-12 * size, strips.sides)
+                k = edges(strips.band[i], strips.band_count[i], EDGE * size, strips.sides)
                 if k >= 3:
                     n = subtract(
                         faces.part, faces.part_count, n, strips.sides, k, 1e-15 * size * size, strips.one, strips.two

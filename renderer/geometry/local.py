@@ -148,7 +148,7 @@ def make(pattern: Pattern, size: float, few: int, tolerance: float, most: int, l
         for j in range(chunks):
             room = room and strips.made[0] <= most
             room = room and lay(pattern, found.piece[i], i, strips.chunks[j], domain, stepped, strips)
-        if room:
+        if room and not undercut:
             piece = pattern.pieces[found.piece[i]]
             straight = piece.curvature == 0.0 and pattern.grooves[piece.groove].scale_kind == SCALE_CONSTANT
             local.regions.apart[i] = 0

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from renderer.geometry.pieces import locate, scale_at, tangent_at
+from renderer.geometry.pieces import locate, point_at, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find
 from renderer.geometry.spans import (
     ADD,
@@ -203,6 +203,14 @@ def meet(
                     continue
                 if max(x * x + y * y, (x + mx) ** 2 + (y + my) ** 2) < inner * inner:
                     continue
+                if piece.length < outer:  # all of it is near its middle
+                    ux, uy = point_at(piece, 0.5 * piece.length)
+                    x, y = x - ux + piece.x - piece.ty * radius, y - uy + piece.y + piece.tx * radius
+                    t = min(max(-(x * mx + y * my) / along, 0.0), 1.0) if along > 0.0 else 0.0
+                    mitre = max(abs(piece.start_mitre), abs(piece.finish_mitre))
+                    far = 0.5 * piece.length + 1.01 * piece.half * math.sqrt(1.0 + mitre * mitre)
+                    if (x + t * mx) ** 2 + (y + t * my) ** 2 > far * far:
+                        continue
             n = meet_piece(pattern, e, n, i, item, dx, dy, p, q, gp, gq, a, c)
         if way in (DOWN, SHADOW):
             w, facet, owner = first(e, n, a, c, thin)

@@ -23,7 +23,7 @@ MATERIALS = st.sampled_from(
     [WHITE, {"roughness": 0}, {"metallic": 1, "roughness": 0.1}, {"transmission": 1, "roughness": 0}, {}]
 )
 MAPPINGS = st.sampled_from([[2, 2], [2, 2], [2000, 0.01], [1e5, 1e5], [0.01, 0.01], [2, 3]])
-TILES = st.sampled_from([None, None, [0.7, 0.9]])
+TILES = st.sampled_from([None, None, [2.3, 1.9]])  # paths that overlap themselves ten times are slow, and no news
 CURVED = {
     "sphere": {"shape": {"type": "sphere", "radius": 1}, "translate": [0, 0, -1]},
     "cylinder": {
