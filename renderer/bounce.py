@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.curve import is_curved, sight_over
 from renderer.geometry.query import nearby
 from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.rays import LEVEL, follow
@@ -82,11 +83,16 @@ def meet_surface(
         d = direction_to_pattern(frame, way)
         rise = leveled(d[0], d[1], d[2], LEVEL)
         w = low if frame.within == 1 else high
-        start = (frame.pq[0] + w * d[0] / rise, frame.pq[1] + w * d[1] / rise, w)
+        p, q, gp, gq = frame.pq[0], frame.pq[1], d[0] / rise, d[1] / rise
+        steer_p = steer_q = 0.0
+        if is_curved(frame) and len(pattern.pieces) > 0:  # the chord where it is over the base
+            p, q, steer_p, steer_q = sight_over(frame, p, q, gp, gq, high, low)
+            gp, gq, steer_p, steer_q = steer_p, steer_q, steer_p - gp, steer_q - gq
+        start = (p + w * gp, q + w * gq, w)
         colour = follow(
-            ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, frame.within == 1, ray.number,
-            seed, ray.footprint, footprint.x, footprint.y, blocked[k], pattern, frame, lighting, materials, slots,
-            albedo, found, spans, leaving, gone,
+            ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, (steer_p, steer_q),
+            frame.within == 1, ray.number, seed, ray.footprint, footprint.x, footprint.y, blocked[k], pattern, frame,
+            lighting, materials, slots, albedo, found, spans, leaving, gone,
         )  # fmt: skip
         for c in range(3):
             radiance[ray.footprint, c] += colour[c]

@@ -218,9 +218,9 @@ def csg(
                         if within:
                             sx, sy, sw = sx - 2.0 * off * n[0], sy - 2.0 * off * n[1], sw - 2.0 * off * n[2]
                         colour = follow(
-                            bounces, through, out, (sx, sy, sw), within, i, seed, index, footprint.x, footprint.y,
-                            footprint.blocked, pattern, frame, lighting, materials, slots, albedo, around, spans,
-                            leaving, gone,
+                            bounces, through, out, (sx, sy, sw), (0.0, 0.0), within, i, seed, index, footprint.x,
+                            footprint.y, footprint.blocked, pattern, frame, lighting, materials, slots, albedo, around,
+                            spans, leaving, gone,
                         )  # fmt: skip
                         red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 if i == -corners:

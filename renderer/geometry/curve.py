@@ -79,6 +79,15 @@ def turned(frame: np.void, x: float, y: float, w: float, n: Vector) -> Vector:
     )
 
 
+@callee
+def bent(frame: np.void, p: float, q: float, w: float) -> Vector:
+    """Where in the tangent frame a point of pattern space lies."""
+    x, y = p - frame.pq[0], q - frame.pq[1]
+    u, v = applied(frame, x, y)
+    mx, my = spreading(frame, x, y)
+    return p + w * mx, q + w * my, w - 0.5 * (u * x + v * y)
+
+
 @leaf
 def bow_of(frame: np.void, bx: float, by: float) -> Bow:
     u, v = applied(frame, bx, by)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.curve import is_curved, turned
+from renderer.geometry.curve import bent, is_curved, turned
 from renderer.geometry.query import Nearby
 from renderer.geometry.random import drawn
 from renderer.geometry.solid import (
@@ -60,18 +60,19 @@ def meet_far(
 
 @callee
 def follow(
-    bounces: int, through: Vector, way: Vector, start: Vector, within: bool, number: int, seed: int, index: int,
-    px: float, py: float, blocked: np.uint64, pattern: Pattern, frame: np.void, lighting: Lighting,
-    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, found: Nearby, spans: Events,
-    leaving: NDArray[np.void], gone: NDArray[np.int64],
+    bounces: int, through: Vector, way: Vector, start: Vector, steer: tuple[float, float], within: bool, number: int,
+    seed: int, index: int, px: float, py: float, blocked: np.uint64, pattern: Pattern, frame: np.void,
+    lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, found: Nearby,
+    spans: Events, leaving: NDArray[np.void], gone: NDArray[np.int64],
 ) -> Vector:  # fmt: skip
     """What comes back along the ray that leaves `start` (off the surface, pattern space) by `way` (unit, world), times
     `through`, RGB: the light of what it meets, and of what the rays from there meet, up to so many `bounces`.
 
-    within: it is inside the body. Each of a footprint's samples, of that number, draws its own rays; (px, py) is the
-    footprint's place on the screen. Where the last one meets the surface, that is lit by all of the sky; from within
-    it shows no light but its own. A ray that leaves the surface meets the sky, or becomes the RAY `leaving[gone[0]]` of
-    footprint `index`, where there is room for any.
+    steer: by how much its first slopes to the plane differ from those of `way`, over a curved base. within: it is
+    inside the body. Each of a footprint's samples, of that number, draws its own rays; (px, py) is the footprint's
+    place on the screen. Where the last one meets the surface, that is lit by all of the sky; from within it shows no
+    light but its own. A ray that leaves the surface meets the sky, or becomes the RAY `leaving[gone[0]]` of footprint
+    `index`, where there is room for any.
     """
     lights, curved = lighting.lights, is_curved(frame)
     red = green = blue = 0.0
@@ -81,6 +82,8 @@ def follow(
         d = direction_to_pattern(frame, way)
         rise = leveled(d[0], d[1], d[2], LEVEL)
         gp, gq = d[0] / rise, d[1] / rise
+        if left == bounces:
+            gp, gq = gp + steer[0], gq + steer[1]
         top, bottom, sense = w, -pattern.depth - thin_of(pattern), SINK if within else DOWN
         if rise > 0.0:
             top, bottom, sense = pattern.height + thin_of(pattern), w, RISE if within else UP
@@ -90,7 +93,8 @@ def follow(
             if leaves and len(leaving) > 0:
                 ray = leaving[gone[0]]
                 gone[0] += 1
-                place = to_world(frame, x, y, w)
+                ox, oy, ow = bent(frame, x, y, w) if curved else (x, y, w)
+                place = to_world(frame, ox, oy, ow)
                 back = 0.0  # what a body stands on begins where it ends
                 if emerged:
                     back = TOUCH * (1.0 + math.sqrt(dot(place, place)))
