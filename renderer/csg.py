@@ -4,7 +4,7 @@ Right for every case, however slow. `auto` sends it what no cheaper method takes
 near one or two grooves whose corners and first few samples all fall on one facet, all lit alike, is left at those: what
 one straight edge cuts off a footprint has one of its corners in it. Any other gets as many as bring the predicted error
 within the tolerance: that of a mean of strata, whose variances the differences of neighbours tell. A part of a pixel,
-as next to an outline, gets as many fewer as it is smaller: of a pixel's parts the errors are independent.
+as next to an outline, gets fewer the smaller it is: of a pixel's parts the errors are independent.
 """
 
 from __future__ import annotations
@@ -116,8 +116,9 @@ def csg(
         across = int(math.ceil(math.sqrt(share)))
         down = (share + across - 1) // across
         part = min(footprint.size, 1.0)
-        begin, probe = max(int(math.ceil(FIRST * part)), 2), max(int(math.ceil(PROBE * part)), 2)
-        most = max(int(math.ceil(MOST * part)), 2)
+        ease = math.sqrt(part)  # half of what independent errors allow: few samples tell little of their own error
+        begin = max(int(math.ceil(FIRST * part)), PROBE)
+        most = max(int(math.ceil(MOST * ease)), begin)
         if bounces > 0:  # rays from facet to facet take their time
             most = max(across, begin)
         corners = 0
@@ -125,11 +126,11 @@ def csg(
         if tolerance > 0.0:
             across = down = begin
             if 0 <= shared <= FEW and bounces == 0:
-                across, down, corners = probe, probe, 4
+                across, down, corners = PROBE, PROBE, 4
             target = tolerance
             if curved and straightened(pattern, frame, view.p, view.q, footprint.blocked, lights) > ROUGH:
                 target = max(tolerance, GRAINY)
-            target *= SURE / part * white(lighting, to_world(frame, view.p, view.q, 0.0))
+            target *= SURE / ease * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0
         taken = looked = 0
@@ -271,7 +272,7 @@ def csg(
         radiance[index, 0] += red / taken
         radiance[index, 1] += green / taken
         radiance[index, 2] += blue / taken
-        radiance[index, 3] += error / SURE * part
+        radiance[index, 3] += error / SURE * ease
         if curved:
             radiance[index, 3] += unsure(frame, max(p0 - fp0, fp1 - p1, q0 - fq0, fq1 - q1, pattern.width))
         radiance[index, 4] += float(looked) * max(shared, 1)

@@ -17,6 +17,7 @@ import pytest
 from numpy.typing import NDArray
 
 from renderer import body
+from renderer.geometry.curve import bent
 from renderer.geometry.shapes import NO_TRIANGLES, Triangles
 from renderer.raycast import Caster
 from renderer.tables import CYLINDER, HIT, MESH, OBJECT, SPHERE
@@ -144,6 +145,30 @@ def test_the_form_is_how_far_the_map_falls_below_its_tangent_plane(shape: int) -
         fall[1, 0] + fall[1, 2],
     ]
     assert np.allclose(frame["form"], np.array(expected) / h**2, rtol=0, atol=20.0 * h**2)
+
+
+@pytest.mark.parametrize("shape", [SPHERE, CYLINDER])
+def test_points_over_the_base_lie_where_their_height_says(shape: int) -> None:
+    """A point at the height w is sigma w from the round surface: what is left is of third order, not of second."""
+    size = np.array([0.7, 0.0]) if shape == SPHERE else np.array([0.7, 1.9])
+    frame = frame_at(shape, size, np.array([5.0, 3.0, -1.0, 0.25]), 0.3, 0.62)
+    sigma = float(np.linalg.norm(frame["axes"][:, 2]))
+    turn = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
+    turn *= np.linalg.det(turn)
+
+    def off(h: float, point: tuple[float, float, float]) -> float:
+        at = frame["origin"] + frame["axes"] @ (np.array(point) - [*frame["pq"], 0.0]) - [3.0, -2.0, 1.0]
+        own = turn.T @ at
+        return abs(float(np.linalg.norm(own if shape == SPHERE else own[:2])) - 0.7 - sigma * h)
+
+    for angle in np.linspace(0.0, 6.0, 7):
+        left = []
+        for h in (0.02, 0.01):
+            p, q, w = frame["pq"][0] + 2.0 * h * math.cos(angle), frame["pq"][1] + 2.0 * h * math.sin(angle), h
+            left.append(off(h, bent(frame, p, q, w)))
+            straight = off(h, (p, q, w))
+            assert left[-1] < max(0.2 * straight, 2e-6)
+        assert left[1] < max(left[0] / 6.0, 1e-9)
 
 
 def test_the_form_of_a_mesh_is_that_of_the_surface_its_normals_tell() -> None:
