@@ -83,14 +83,13 @@ def meet_surface(
         d = direction_to_pattern(frame, way)
         rise = leveled(d[0], d[1], d[2], LEVEL)
         w = low if frame.within == 1 else high
-        p, q, gp, gq = frame.pq[0], frame.pq[1], d[0] / rise, d[1] / rise
-        steer_p = steer_q = 0.0
+        slope_p, slope_q = d[0] / rise, d[1] / rise
+        p, q, gp, gq = frame.pq[0], frame.pq[1], slope_p, slope_q
         if is_curved(frame) and len(pattern.pieces) > 0:  # the chord where it is over the base
-            p, q, steer_p, steer_q = sight_over(frame, p, q, gp, gq, high, low)
-            gp, gq, steer_p, steer_q = steer_p, steer_q, steer_p - gp, steer_q - gq
+            p, q, gp, gq = sight_over(frame, p, q, slope_p, slope_q, high, low)
         start = (p + w * gp, q + w * gq, w)
         colour = follow(
-            ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, (steer_p, steer_q),
+            ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, (gp - slope_p, gq - slope_q),
             frame.within == 1, ray.number, seed, ray.footprint, footprint.x, footprint.y, blocked[k], pattern, frame,
             lighting, materials, slots, albedo, found, spans, leaving, gone,
         )  # fmt: skip

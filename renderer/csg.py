@@ -39,7 +39,7 @@ SHARED = fixed(32)  # up to so many pieces are found once for all samples of a f
 FEW = 2  # with a tolerance, and no more pieces near than this, it begins with
 PROBE = 4  # the corners and PROBE * PROBE samples,
 FIRST = 8  # else or then takes FIRST * FIRST,
-MOST = 64  # and at most MOST * MOST
+MOST = 64  # and at most MOST * MOST; a part of a pixel fewer
 GRAINY = 0.01  # the tolerance, at least, where a curved base makes rays bend much: many footprints at low light
 SURE = 0.5  # how much of the tolerance the standard error may take
 
@@ -55,12 +55,12 @@ def csg(
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
     samples: at least so many a pixel, in a grid of strata, where the tolerance is 0; else as many as that asks for,
-    which is the error relative to a white surface in the same light. sparing: NOT_MINE, where that is more than
-    MOST * MOST. bounces: how often light is followed from facet to facet, by no more than `samples` rays a footprint;
-    indirect: that light alone, added to what is there. leaving: room for each sample's RAY (`rays.follow`), if others
-    are to meet them; `gone` (1,) is how many there are. asking, asked: the same for light that another object may keep
-    from where a footprint is `torn`; its `number` is the light's. slots: rows of `materials` for the pattern's facets,
-    the object's own first.
+    which is the error relative to a white surface in the same light. sparing: NOT_MINE, where that is more than the
+    most it may take. bounces: how often light is followed from facet to facet, by no more than `samples` rays a
+    footprint; indirect: that light alone, added to what is there. leaving: room for each sample's RAY (`rays.follow`),
+    if others are to meet them; `gone` (1,) is how many there are. asking, asked: the same for light that another object
+    may keep from where a footprint is `torn`; its `number` is the light's. slots: rows of `materials` for the pattern's
+    facets, the object's own first.
     """
     capacity = max(pattern.near, SHARED)
     owned = nearby(pattern, capacity), events(pattern), nearby(pattern, capacity)

@@ -33,6 +33,7 @@ ROUND: dict[str, Json] = {
 SCALE = {"sphere": (2.0 * math.pi, math.pi), "cylinder": (2.0 * math.pi, 2.0)}  # pattern units are the world's
 ABOUT = 1.5 * math.pi  # p in the middle of the picture
 OVER = 20.0  # degrees
+MOVED = (3.0, -2.0, 1.0)
 
 
 def row(pitch: float, high: float, count: int, across: bool = False) -> Json:
@@ -106,12 +107,18 @@ def errors(data: Json, shape: str, method: str, radiance: Radiance) -> tuple[flo
     return off(radiance(data, method=method, samples=256)), flat
 
 
+def some_turn() -> Floats:
+    """A rotation."""
+    turn = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
+    rotation: Floats = turn * np.linalg.det(turn)
+    return rotation
+
+
 def frame_at(shape: int, size: Floats, mapping: Floats, u: float, v: float) -> np.void:
     """The frame at (u, v) of a round object, turned and moved, seen from outside."""
     obj = np.zeros(1, OBJECT)
-    turn = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
-    turn *= np.linalg.det(turn)
-    obj["shape"], obj["size"], obj["rotation"], obj["translation"] = shape, size, turn, [3.0, -2.0, 1.0]
+    turn = some_turn()
+    obj["shape"], obj["size"], obj["rotation"], obj["translation"] = shape, size, turn, MOVED
     obj["mapping"], obj["pattern"] = mapping, 0
     base = body._NO_BASE._replace(shape=shape, size=size, mapping=mapping)
     place = np.array([[[u * mapping[0] + mapping[2], v * mapping[1] + mapping[3], 0.0]]])
@@ -153,12 +160,10 @@ def test_points_over_the_base_lie_where_their_height_says(shape: int) -> None:
     size = np.array([0.7, 0.0]) if shape == SPHERE else np.array([0.7, 1.9])
     frame = frame_at(shape, size, np.array([5.0, 3.0, -1.0, 0.25]), 0.3, 0.62)
     sigma = float(np.linalg.norm(frame["axes"][:, 2]))
-    turn = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
-    turn *= np.linalg.det(turn)
 
     def off(h: float, point: tuple[float, float, float]) -> float:
-        at = frame["origin"] + frame["axes"] @ (np.array(point) - [*frame["pq"], 0.0]) - [3.0, -2.0, 1.0]
-        own = turn.T @ at
+        at = frame["origin"] + frame["axes"] @ (np.array(point) - [*frame["pq"], 0.0]) - MOVED
+        own = some_turn().T @ at
         return abs(float(np.linalg.norm(own if shape == SPHERE else own[:2])) - 0.7 - sigma * h)
 
     for angle in np.linspace(0.0, 6.0, 7):
