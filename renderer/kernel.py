@@ -6,12 +6,17 @@ infinities as numpy's do; a kernel that can meet one says what it does with it.
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numba
 import numpy as np
 from numba.core import types
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_machinery import register_pass
+from numba.core.typed_passes import NativeLowering
 from numba.extending import intrinsic
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -24,13 +29,66 @@ def kernel(function: F) -> F:
 
 
 def leaf(function: F) -> F:
-    """A small function that only kernels call: set in where it is called."""
-    return numba.njit(cache=False, nogil=True, error_model="numpy", forceinline=True)(function)  # type: ignore[no-any-return]
+    """A function that only kernels call, small or often needed: set in where it is called."""
+    return _part(function, forceinline=True)
 
 
 def callee(function: F) -> F:
     """A function that only kernels call, called: for what is rarely needed, and long. Its arrays must be borrowed."""
-    return numba.njit(cache=False, nogil=True, error_model="numpy")(function)  # type: ignore[no-any-return]
+    return _part(function, forceinline=False)  # said, as numba else hands on what a leaf that calls it has
+
+
+class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """What a part of kernels is translated to: LLVM's code, for kernels to link.
+
+    numba optimizes every function it meets, with all it calls, and makes machine code of it, kernels and their parts
+    alike. Of parts that is never run: a kernel optimizes them once more with itself. Leaving it out halves the time
+    to compile, and changes nothing of the kernels.
+    """
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """Of what Python runs when it calls a part: it raises TypeError."""
+        self._ensure_finalized()
+        return cast(int, ctypes.cast(ctypes.pythonapi.PyErr_BadArgument, ctypes.c_void_p).value)
+
+    @property
+    def codegen(self) -> _PartLibrary:
+        """What numba tells the place of a function's constants. Here it has none."""
+        return self
+
+    def set_env(self, name: str, environment: object) -> None:
+        """Nothing: see above."""
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _PartLowering(NativeLowering):  # type: ignore[misc]
+    _name = "part_lowering"
+
+    def run_pass(self, state: Any) -> bool:
+        state.library = _PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        return cast(bool, super().run_pass(state))
+
+
+class _PartCompiler(CompilerBase):  # type: ignore[misc]
+    def define_pipelines(self) -> list[Any]:
+        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.passes = [(_PartLowering if p is NativeLowering else p, why) for p, why in passes.passes]
+        passes.finalize()
+        return [passes]
+
+
+def _part(function: F, *, forceinline: bool) -> F:
+    return numba.njit(  # type: ignore[no-any-return]
+        cache=False, nogil=True, error_model="numpy", forceinline=forceinline, no_cpython_wrapper=True,
+        no_cfunc_wrapper=True, pipeline_class=_PartCompiler,
+    )(function)  # fmt: skip
 
 
 def fixed(value: N) -> N:

@@ -385,7 +385,7 @@ def _frame(compiled: CompiledScene, settings: Settings, model: Truth | Textures 
     for row, index in enumerate(compiled.objects["pattern"]):
         if index >= 0 and caster.shadows and settings.method in ("auto", "lines", "area", "csg"):
             heights[row] = compiled.patterns[index].height, compiled.patterns[index].depth
-    lit = settings.bounces > 0 or bool(compiled.lighting.sky.any()) or shading.has_picture(compiled.lighting)
+    lit = settings.bounces > 0 or bool(compiled.lighting.sky.any()) or len(compiled.lighting.surroundings.tables) > 0
     return Frame(
         scene=compiled,
         settings=settings,
@@ -510,9 +510,12 @@ def warm_up(*, lines: bool = False, geometry: bool = False, textures: bool = Fal
 
 
 def compile_analytic(*methods: str) -> None:
-    """Compile the kernels of these methods, or load them."""
+    """Compile the kernels of these methods, or load them: of `area` and `lines` without those of what they leave."""
     for method in methods:
-        _try(method, {"type": "sphere", "radius": 1})
+        _try(
+            method,
+            {"type": "rectangle", "size": [9, 9]} if method in ("area", "lines") else {"type": "sphere", "radius": 1},
+        )
 
 
 def compile_geometry() -> None:

@@ -38,7 +38,7 @@ from renderer.geometry.spans import (
     upright,
 )
 from renderer.geometry.strips import STRIPS, Strips
-from renderer.kernel import callee, fixed, leaf
+from renderer.kernel import fixed, leaf
 from renderer.tables import Floats, Pattern
 
 CELLS = 2 * STRIPS
@@ -120,7 +120,7 @@ def fill(pattern: Pattern, found: Nearby, strips: Strips, cells: Cells) -> None:
                 cells.height[at, 1, k] = strips.height[i, k]
 
 
-@callee
+@leaf
 def peel(
     polygon: Floats, count: int, box: Floats, height: Floats, kind: int, rank: int, up: bool, index: int,
     size: float, tall: float, strips: Strips, cells: Cells, faces: Faces,
@@ -214,7 +214,7 @@ def put_faces(n: int, height: Floats, up: bool, found: int, facet: int, part: in
     return True
 
 
-@callee
+@leaf
 def carve(
     pattern: Pattern, found: Nearby, strips: Strips, domain: Domain, cells: Cells, faces: Faces
 ) -> bool:  # fmt: skip
@@ -306,7 +306,7 @@ def is_solid(t: float, w: float, side: int, n: int, lowest: int, cells: Cells) -
     return solid
 
 
-@callee
+@leaf
 def raise_walls(
     pattern: Pattern, found: Nearby, wall: int, lowest: int, size: float, tall: float, strips: Strips, cells: Cells,
     faces: Faces,

@@ -11,7 +11,7 @@ from renderer.geometry.faces import Faces
 from renderer.geometry.query import Nearby
 from renderer.geometry.sight import Seen, colour_at
 from renderer.geometry.view import View, on_plane
-from renderer.kernel import callee, leaf
+from renderer.kernel import leaf
 from renderer.shading import to_world
 from renderer.tables import DIRECTIONAL, Floats, Lighting, Pattern
 
@@ -110,7 +110,7 @@ def doubt(rough: float, fine: float) -> float:
     return apart * apart / (3.0 * most) if apart > 1e-9 * most else 0.0
 
 
-@callee
+@leaf
 def finely(
     f: int, light: int, part: Floats, corners: int, mx: float, my: float, footprint: np.void, pattern: Pattern,
     frame: np.void, lighting: Lighting, material: np.void, albedo: Floats, bent: bool, found: Nearby, faces: Faces,

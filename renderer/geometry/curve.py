@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.kernel import callee, leaf
+from renderer.kernel import leaf
 from renderer.shading import Vector, light_to_pattern
 from renderer.tables import Floats, Pattern
 
@@ -65,7 +65,7 @@ def spreading(frame: np.void, x: float, y: float) -> tuple[float, float]:
     return (g * u - f * v) / area, (e * v - f * u) / area
 
 
-@callee
+@leaf
 def turned(frame: np.void, x: float, y: float, w: float, n: Vector) -> Vector:
     """A normal of pattern space at x and the height w, in the tangent frame, to first order."""
     u, v = applied(frame, x, y)
@@ -79,7 +79,7 @@ def turned(frame: np.void, x: float, y: float, w: float, n: Vector) -> Vector:
     )
 
 
-@callee
+@leaf
 def bent(frame: np.void, p: float, q: float, w: float) -> Vector:
     """Where in the tangent frame a point of pattern space lies."""
     x, y = p - frame.pq[0], q - frame.pq[1]
@@ -105,7 +105,7 @@ def reach_over(slope: float, bend: float, height: float) -> float:
     return 2.0 / (slope + math.sqrt(max(slope * slope + 2.0 * bend * height, 0.0)))
 
 
-@callee
+@leaf
 def sink(
     bow: Bow, across: float, along: float, centre: float, b: Floats, w: Floats, count: int, height: Floats
 ) -> None:
@@ -126,7 +126,7 @@ def sink(
         height[i] = 2.0 * c / (d + math.sqrt(max(d * d + 4.0 * second * c, 0.0)))
 
 
-@callee
+@leaf
 def eye_over(height: float, depth: float, width: float, frame: np.void) -> float:
     """How high over the plane the eye stands for straight rays to pass over the lowest and the highest points of the
     grooves where sight over a curved base does; the eye's own height where it is flat."""
@@ -142,7 +142,7 @@ def eye_over(height: float, depth: float, width: float, frame: np.void) -> float
     return up * 0.5 * (1.0 + math.sqrt(max(1.0 + 2.0 * (u * x + v * y) * (height - deep), 0.0)))
 
 
-@callee
+@leaf
 def sight_over(
     frame: np.void, p: float, q: float, gp: float, gq: float, high: float, low: float
 ) -> tuple[float, float, float, float]:
@@ -165,7 +165,7 @@ def sight_over(
     return frame.pq[0] + x1 - low * sp, frame.pq[1] + y1 - low * sq, sp, sq
 
 
-@callee
+@leaf
 def light_over(
     height: float, width: float, frame: np.void, light: np.void, p: float, q: float, w: float, top: float
 ) -> tuple[float, float, float, float]:

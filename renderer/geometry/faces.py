@@ -21,7 +21,7 @@ from renderer.geometry.polygon import CORNERS, Counts, edges, overlap, subtract
 from renderer.geometry.regions import BANDS, REMOVALS, Regions
 from renderer.geometry.spans import SIDE
 from renderer.geometry.strips import Strips
-from renderer.kernel import callee, leaf
+from renderer.kernel import leaf
 from renderer.tables import Floats
 
 FACES = 16384
@@ -286,7 +286,7 @@ def is_calm(faces: Faces, n: int, band: int, tie: float) -> bool:
     return True
 
 
-@callee
+@leaf
 def raise_wall(strips: Strips, wall: int, near: float, tie: float, faces: Faces) -> bool:
     """Add what stands along one of the lines `strips.wall`. False where there is no room."""
     x0, y0, x1, y1 = strips.wall[wall, 0], strips.wall[wall, 1], strips.wall[wall, 2], strips.wall[wall, 3]

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.kernel import callee, leaf
+from renderer.kernel import leaf
 from renderer.tables import Floats
 
 CORNERS = 64
@@ -103,7 +103,7 @@ def clip(polygon: Floats, count: int, a: float, b: float, c: float, out: Floats)
     return made if made >= 3 else 0
 
 
-@callee
+@leaf
 def clipped(polygon: Floats, count: int, planes: Floats, first: int, last: int, spare: Floats) -> int:
     """Cut a polygon in place by the half-planes first <= k < last, no more than CORNERS - MOST: how many corners."""
     for k in range(first, last):
@@ -131,7 +131,7 @@ def area(polygon: Floats, count: int) -> float:
     return 0.5 * total
 
 
-@callee
+@leaf
 def subtract(
     polygons: Floats, counts: Counts, n: int, planes: Floats, last: int, least: float, one: Floats, two: Floats
 ) -> int:  # fmt: skip

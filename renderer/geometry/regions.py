@@ -14,7 +14,7 @@ import numpy as np
 from renderer.geometry.domain import Domain
 from renderer.geometry.polygon import CORNERS, Counts, area, clipped, edges, enclose
 from renderer.geometry.strips import STRIPS, Strips
-from renderer.kernel import callee, fixed, leaf
+from renderer.kernel import fixed, leaf
 from renderer.tables import Floats
 
 BANDS, REMOVALS = fixed(0), fixed(1)
@@ -42,7 +42,7 @@ def regions_of() -> Regions:
     )  # fmt: skip
 
 
-@callee
+@leaf
 def unite(
     kind: int, place: int, polygons: Floats, counts: Counts, first: int, last: int, straight: bool, tx: float,
     ty: float, short: float, domain: Domain, strips: Strips, regions: Regions,

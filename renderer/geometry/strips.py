@@ -20,7 +20,7 @@ from renderer.geometry.domain import Domain
 from renderer.geometry.pieces import point_at, scale_at, tangent_at
 from renderer.geometry.polygon import CORNERS, Counts, clipped, enclose
 from renderer.geometry.spans import BODY, CAP_FINISH, CAP_START, END, SIDE, TAIL_FINISH, TAIL_START, next_stop
-from renderer.kernel import callee, leaf
+from renderer.kernel import leaf
 from renderer.tables import CORNER, FLAT, PROFILE, SCALE_CONSTANT, SCALE_SINE, Floats, Pattern
 
 STRIPS, WALLS, CHUNKS = 4096, 4096, 512  # room for those of one surface
@@ -319,7 +319,7 @@ def divide(
     return n
 
 
-@callee
+@leaf
 def keep_wall(
     walls: Floats, tags: Counts, n: int, planes: Floats, count: int, half: int, bx: float, by: float, bc: float,
     domain: Domain, x0: float, y0: float, x1: float, y1: float, near: float, found: int, facet: int, part: int,
@@ -413,7 +413,7 @@ def overhangs(pattern: Pattern, profile: int) -> bool:
     return len(pattern.part_first) > 0 and pattern.part_first[profile] < pattern.part_first[profile + 1]
 
 
-@callee
+@leaf
 def lay_parts(
     pattern: Pattern, item: int, found: int, chunk: np.void, count: int, domain: Domain, strips: Strips
 ) -> bool:  # fmt: skip

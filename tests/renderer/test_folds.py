@@ -20,12 +20,12 @@ import schema
 from renderer import pipeline
 from renderer.compile import PatternCache, compile_scene, families, patterns
 from renderer.footprint import Tile, flat_frames, footprints
-from renderer.geometry import layout
-from renderer.geometry.query import find, nearby
+from renderer.geometry import layout, query
 from renderer.geometry.view import view_of
 from renderer.raycast import Caster
 from renderer.tables import LINE, Pattern
 
+from .parts import alone
 from .scenes import PALETTE, Floats, Json, rms
 
 Plate = Callable[..., Json]
@@ -193,13 +193,14 @@ def looked_at(plate: Plate, check: Check, kind: str, count: int, profile: list[l
     seen = footprints(
         caster, camera, lights, Tile(0, 0, 16, 12), flat_frames(caster, camera.origin), np.zeros((1, 2)), 0
     )
-    work = layout.work_for(pattern, len(lights))
+    work = alone(layout.work_for)(pattern, len(lights))
+    towards, meet, fold = alone(view_of), alone(layout.meet_lights), alone(layout.fold_within)
     found = []
     for footprint in seen.footprints:
         frame = seen.frames[footprint["frame"]]
-        view = view_of(footprint, frame, camera)
-        layout.meet_lights(False, pattern, frame, view, footprint["blocked"], lights, work)
-        rows, entries, _ = layout.fold_within(False, 0.0, pattern, frame, view, lights, work)
+        view = towards(footprint, frame, camera)
+        meet(False, pattern, frame, view, footprint["blocked"], lights, work)
+        rows, entries, _ = fold(False, 0.0, pattern, frame, view, lights, work)
         found.append(rows + entries if rows else -1)
     return found
 
@@ -292,7 +293,8 @@ def test_a_query_gives_each_piece_once_and_scans_what_it_reaches(tile: list[floa
         linear(40, V)[0],
     ]  # fmt: skip
     pattern = compiled(grooves, tile)
-    found = nearby(pattern, 1 << 20)
+    find = alone(query.find)
+    found = alone(query.nearby)(pattern, 1 << 20)
     random = np.random.default_rng(3)
     for _ in range(200):
         x, y = random.uniform(-1, 2, 2)

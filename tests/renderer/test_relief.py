@@ -20,6 +20,8 @@ from renderer.compile import PatternCache
 from renderer.errors import RenderError
 from renderer.tables import Pattern
 
+from .parts import alone
+
 Json = dict[str, Any]
 Floats = NDArray[np.float64]
 Plate = Callable[..., Json]
@@ -114,19 +116,20 @@ def test_march(wraps: bool) -> None:
         heights, np.zeros((n * n, 3), np.float32), np.zeros((n * n, 0), np.float32), np.zeros(1, np.int32),
         np.zeros(1, np.int64), np.array([[n, n]]), np.array([[0.0, 0.25]]), np.array([0.0, 0, n, n]), wraps,
     )  # fmt: skip
+    march, height_at = alone(relief.march), alone(relief.height_at)
     found = 0
     for _ in range(300):
         x, y = random.uniform(-2, n + 1, 2)
         dx, dy = random.normal(0, 4, 2) * (random.random(2) > 0.1)
-        at = relief.march(table, 0, x, y, 0.3, dx, dy, -0.3, True)
+        at = march(table, 0, x, y, 0.3, dx, dy, -0.3, True)
         t = np.linspace(0, min(at, 1.0), 200)[:-1]
-        above = [0.3 * (1 - s) - relief.height_at(table, 0, n, n, x + s * dx, y + s * dy) for s in t]
+        above = [0.3 * (1 - s) - height_at(table, 0, n, n, x + s * dx, y + s * dy) for s in t]
         assert min(above) > -0.5 / 4
         if at < math.inf:
             found += 1
-            assert abs(0.3 * (1 - at) - relief.height_at(table, 0, n, n, x + at * dx, y + at * dy)) < 1e-6
+            assert abs(0.3 * (1 - at) - height_at(table, 0, n, n, x + at * dx, y + at * dy)) < 1e-6
         # a shadow ray the same way: it is stopped where this one is, or a line of texel centres later
-        assert (relief.march(table, 0, x, y, 0.3, dx, dy, -0.3, False) < math.inf) == (at < math.inf)
+        assert (march(table, 0, x, y, 0.3, dx, dy, -0.3, False) < math.inf) == (at < math.inf)
     assert found > 200
 
 

@@ -8,8 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from renderer.geometry.share import share
+from renderer.geometry import share as shares
 
+from .parts import alone
+
+share = alone(shares.share)
 NUMBER = st.floats(-10, 10, allow_nan=False)
 
 
@@ -29,7 +32,7 @@ def clipped(a: float, b: float, c: float) -> float:
     )
 
 
-@settings(deadline=None)  # the kernel is compiled in the first example
+@settings(deadline=None)  # the kernel is compiled or loaded in the first example
 @given(a=NUMBER, b=NUMBER, c=NUMBER)
 def test_against_clipping(a: float, b: float, c: float) -> None:
     """Where the line is well defined: its value must be known at the corners to more than rounding."""

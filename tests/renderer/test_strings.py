@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from renderer.geometry import strings
 from renderer.tables import BASE, LINE
 
+from .parts import alone
+
 Json = dict[str, Any]
 Floats = NDArray[np.float64]
 Points = list[tuple[float, float]]
@@ -27,6 +29,7 @@ LAMP = {"type": "point", "position": [-0.9, 0.6, 1.4], "intensity": [1.5, 1.8, 2
 SKY = {"type": "constant", "radiance": [0.3, 0.4, 0.5]}
 INSIDE = {"fov": 14, "resolution": [32, 24]}  # no pixel on the plate's edge
 
+FACTORS = alone(strings.factors)
 VEE = {"type": "v", "width": 0.16, "depth": 0.12}
 DITCH = {"type": "trapezoid", "width": 0.16, "floor": 0.08, "depth": 0.1}
 BOX = {"type": "polyline", "points": [[-0.08, 0], [-0.08, -0.1], [0.08, -0.1], [0.08, 0]]}
@@ -41,9 +44,7 @@ def factors(points: Points, parts: int = 1) -> tuple[Floats, Floats, Floats]:
     x, y = np.concatenate([*chain, np.array(points[-1:])]).T.astype(float)
     n = len(x) - 1
     factor, sky = np.empty((n, n)), np.empty(n)
-    strings.factors(
-        n, x.copy(), y.copy(), np.empty(n + 1, np.int64), np.empty(n + 1), np.empty((n + 1, n + 1)), factor, sky
-    )
+    FACTORS(n, x.copy(), y.copy(), np.empty(n + 1, np.int64), np.empty(n + 1), np.empty((n + 1, n + 1)), factor, sky)
     return factor.T, sky, np.hypot(np.diff(x), np.diff(y))
 
 
