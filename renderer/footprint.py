@@ -16,7 +16,8 @@ from renderer.geometry.shapes import touching
 from renderer.tables import FOOTPRINT, FRAME, HIT, MESH, RECTANGLE, Camera, Floats, Ints
 
 LEVELS = 4  # splits of a pixel on an edge: 256 footprints at most
-SMOOTH_COSINE = 0.9  # normals within a footprint differ by less than about 25 degrees
+SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
+TURN = 0.25  # ... nor by more than 1 - cosine = TURN * tolerance (measured): a tangent plane errs as that does
 
 
 class Shapes(Protocol):
@@ -76,10 +77,10 @@ def flat_frames(shapes: Shapes, origin: Floats) -> dict[int, NDArray[np.void]]:
 
 def footprints(
     shapes: Shapes, camera: Camera, lights: NDArray[np.void], tile: Tile, flat: dict[int, NDArray[np.void]],
-    heights: Floats, seed: int,
+    heights: Floats, tolerance: float, seed: int,
 ) -> Footprints:  # fmt: skip
     """The footprints of a tile. heights: (n, 2) of each row of OBJECT, how high and how deep its grooves are, pattern
-    units."""
+    units. tolerance: the error of a pixel relative to white that its surface's turning may bring."""
     ys, xs = np.mgrid[0 : tile.height + 1, 0 : tile.width + 1]  # corners, shared by the pixels around
     corner_rays = rays(camera, (xs + tile.x).ravel().astype(float), (ys + tile.y).ravel().astype(float))
     corners = shapes.hits(camera.origin, corner_rays)
@@ -99,7 +100,8 @@ def footprints(
         middle = shapes.hits(camera.origin, middle_rays)
         mask = shapes.blocked(camera.origin, middle_rays, middle, lights)
         if level < LEVELS:
-            smooth = touching(middle, mask, corners, corner_mask, around, SMOOTH_COSINE)
+            turn = TURN * tolerance * 2**level  # along an edge, which 2^level of 4^level parts meet
+            smooth = touching(middle, mask, corners, corner_mask, around, max(SMOOTH_COSINE, 1.0 - turn))
         else:
             smooth = np.ones(len(middle), np.bool_)
         keep = np.flatnonzero(smooth & (middle["object"] >= 0))

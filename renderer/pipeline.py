@@ -119,7 +119,8 @@ class Frame:
             self._put(tile, image, methods)
             return {"geometry": clock() - begin}
         seen = footprints(
-            self.caster, scene.camera, scene.lighting.lights, tile, self.flat, self.heights, settings.seed
+            self.caster, scene.camera, scene.lighting.lights, tile, self.flat, self.heights, settings.tolerance,
+            settings.seed,
         )  # fmt: skip
         cast = clock()
         radiance = np.zeros((len(seen.footprints), 5))  # RGB, predicted error, cost
@@ -276,17 +277,19 @@ class Frame:
         indirect: add what these bring to what is there. Of what is torn, all of `chosen` or nothing.
         """
         settings, footprints = self.settings, part.seen.footprints
-        each, asks = 0, 0  # rays that a footprint may send out
-        if bounces > 0 and self.rays_go_on:
-            each, tolerance = math.prod(self._strata()), 0.0
-        if not indirect and footprints["torn"][chosen].any():
-            asks, tolerance = math.prod(self._strata()) * len(part.lighting.lights), 0.0
-        batch = max(RAYS // (each + asks), 1) if each + asks else len(chosen)
-        for first in range(0, len(chosen), batch):
+        goes = bounces > 0 and self.rays_go_on
+        asks = len(part.lighting.lights) if not indirect and footprints["torn"][chosen].any() else 0
+        if goes or asks:
+            tolerance = 0.0
+        share = np.ceil(settings.samples * footprints["size"][chosen] ** 2)
+        room = np.ceil(np.sqrt(share)).astype(np.int64) ** 2  # as many strata as a footprint has, and a few more
+        batch = np.cumsum(room * (goes + asks)) // RAYS
+        for some, strata in zip(
+            *(np.split(of, np.flatnonzero(np.diff(batch)) + 1) for of in (chosen, room)), strict=True
+        ):
             start = time.perf_counter()
-            some = chosen[first : first + batch]
-            leaving, gone = np.zeros(len(some) * each, RAY), np.zeros(1, np.int64)
-            asking, asked = np.zeros(len(some) * asks, RAY), np.zeros(1, np.int64)
+            leaving, gone = np.zeros(strata.sum() * goes, RAY), np.zeros(1, np.int64)
+            asking, asked = np.zeros(strata.sum() * asks, RAY), np.zeros(1, np.int64)
             csg(
                 settings.samples, bounces, indirect, tolerance, sparing, settings.seed, leaving, gone, asking, asked,
                 part.pattern, footprints, some, *self._of(part),
@@ -510,12 +513,11 @@ def warm_up(*, lines: bool = False, geometry: bool = False, textures: bool = Fal
 
 
 def compile_analytic(*methods: str) -> None:
-    """Compile the kernels of these methods, or load them: of `area` and `lines` without those of what they leave."""
+    """Compile the kernels of these methods, or load them."""
     for method in methods:
-        _try(
-            method,
-            {"type": "rectangle", "size": [9, 9]} if method in ("area", "lines") else {"type": "sphere", "radius": 1},
-        )
+        plane = method in ("area", "lines")  # of which they leave nothing to `csg`
+        shape: dict[str, object] = {"type": "rectangle", "size": [9, 9]} if plane else {"type": "sphere", "radius": 1}
+        _try(method, shape, bounces=int(method == "csg"))
 
 
 def compile_geometry() -> None:
@@ -529,15 +531,15 @@ _MESH: dict[str, object] = {"type": "mesh", "file": "triangle.obj"}
 _TRIANGLE = b"""v -2 -2 0\nv 2 -2 0\nv 0 2 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n"""
 
 
-def _try(method: str, shape: dict[str, object]) -> None:
-    """Render a picture that nobody sees, with lights of both kinds and grooves."""
+def _try(method: str, shape: dict[str, object], bounces: int = 0) -> None:
+    """Render a picture that nobody sees, with lights of both kinds and grooves; in glass where rays go on."""
     scene = schema.check(
         {
             "intaglio": 1,
             "camera": {"origin": [0, 0, 3], "target": [0, 0.1, 0], "resolution": [2, 2]},
             "lights": [{"type": "constant", "radiance": [1, 1, 1]},
                        {"type": "point", "position": [0, 0, 2], "intensity": [1, 1, 1]}],
-            "materials": {"m": {}},
+            "materials": {"m": {"transmission": min(bounces, 1)}},
             "patterns": {"p": {"grooves": [{"path": {"type": "circle", "center": [0.5, 0.5], "radius": 0.2},
                                             "profile": {"type": "v", "width": 0.1, "depth": 0.1}}]}},
             "objects": [{"shape": shape, "material": "m", "pattern": "p"}],
@@ -550,4 +552,4 @@ def _try(method: str, shape: dict[str, object]) -> None:
         model = _truth(compiled, 0)
     elif method == "relief":
         model = _textures(compiled, 16, 1, None)
-    _frame(compiled, Settings(method, 1, 0, 0, 16, 0.01), model).tile(Tile(0, 0, 2, 2))
+    _frame(compiled, Settings(method, 1, bounces, 0, 16, 0.01), model).tile(Tile(0, 0, 2, 2))

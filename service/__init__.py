@@ -1,3 +1,3 @@
 """What people and programs talk to: the command line and the REST service."""
 
-COMPILING = "compiling the kernels, once after an install: one and a half to two and a half minutes"
+COMPILING = "compiling the kernels, once after an install: about a minute and a half"

@@ -175,7 +175,7 @@ def test_first_start_says_what_it_waits_for(scene_file: Path) -> None:
     process = start_slow(scene_file.parent, kernels=False)
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=30)
-    assert told.startswith(b"compiling the kernels, once after an install: one and a half to two and a half minutes\n")
+    assert told.startswith(b"compiling the kernels, once after an install: about a minute and a half\n")
 
 
 def test_progress_bar_on_a_terminal(scene_file: Path) -> None:

@@ -90,7 +90,7 @@ def test_the_inside_of_a_surface_is_one_footprint_a_pixel(check: Callable[[Json]
     made, caster = compiled(data, check)
     flat = flat_frames(caster, made.camera.origin)
     seen = footprints(
-        caster, made.camera, made.lighting.lights, Tile(0, 0, 48, 36), flat, np.zeros((9, 2)), 0
+        caster, made.camera, made.lighting.lights, Tile(0, 0, 48, 36), flat, np.zeros((9, 2)), 1.0, 0
     ).footprints
     count = np.bincount(seen["pixel"], minlength=48 * 36).reshape(36, 48)
     x, y = (np.arange(48) + 0.5 - 24) / 10, (18 - np.arange(36) - 0.5) / 10

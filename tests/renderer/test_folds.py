@@ -191,7 +191,7 @@ def looked_at(plate: Plate, check: Check, kind: str, count: int, profile: list[l
     pattern, camera, lights = compiled.patterns[0], compiled.camera, compiled.lighting.lights
     caster = Caster(compiled.objects, compiled.triangles)
     seen = footprints(
-        caster, camera, lights, Tile(0, 0, 16, 12), flat_frames(caster, camera.origin), np.zeros((1, 2)), 0
+        caster, camera, lights, Tile(0, 0, 16, 12), flat_frames(caster, camera.origin), np.zeros((1, 2)), 1.0, 0
     )
     work = alone(layout.work_for)(pattern, len(lights))
     towards, meet, fold = alone(view_of), alone(layout.meet_lights), alone(layout.fold_within)
