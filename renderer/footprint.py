@@ -18,6 +18,7 @@ from renderer.tables import FOOTPRINT, FRAME, HIT, MESH, RECTANGLE, Camera, Floa
 LEVELS = 4  # splits of a pixel on an edge: 256 footprints at most
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
 TURN = 0.25  # ... nor by more than 1 - cosine = TURN * tolerance (measured): a tangent plane errs as that does
+TURNS = 2  # splits for that alone: a mesh may turn in every triangle, however small
 
 
 class Shapes(Protocol):
@@ -100,7 +101,9 @@ def footprints(
         middle = shapes.hits(camera.origin, middle_rays)
         mask = shapes.blocked(camera.origin, middle_rays, middle, lights)
         if level < LEVELS:
-            turn = TURN * tolerance * 2**level  # along an edge, which 2^level of 4^level parts meet
+            turn = (
+                TURN * tolerance * 2**level if level < TURNS else 1.0
+            )  # an edge runs through 2^level of 4^level parts
             smooth = touching(middle, mask, corners, corner_mask, around, max(SMOOTH_COSINE, 1.0 - turn))
         else:
             smooth = np.ones(len(middle), np.bool_)

@@ -117,7 +117,8 @@ class Render(Model):
         ge=1e-5,
         le=1,
         description="The error that auto keeps within, of a pixel's radiance (mean of the channels), relative to a "
-        "white matt surface turned to each light of the scene. Default: 0.002.",
+        "white matt surface turned to each light of the scene. On curved shapes every method but geometry splits "
+        "pixels over which the surface turns by more than it allows. Default: 0.002.",
     )
     exposure: float = Field(
         default=1.0, ge=1e-6, le=1e6, description="Factor on the radiance in PNG files, a pure number. Default: 1."
