@@ -101,9 +101,7 @@ def footprints(
         middle = shapes.hits(camera.origin, middle_rays)
         mask = shapes.blocked(camera.origin, middle_rays, middle, lights)
         if level < LEVELS:
-            turn = (
-                TURN * tolerance * 2**level if level < TURNS else 1.0
-            )  # an edge runs through 2^level of 4^level parts
+            turn = TURN * tolerance * 2**level if level < TURNS else 1.0  # an edge meets 2^level of 4^level parts
             smooth = touching(middle, mask, corners, corner_mask, around, max(SMOOTH_COSINE, 1.0 - turn))
         else:
             smooth = np.ones(len(middle), np.bool_)

@@ -283,10 +283,8 @@ class Frame:
             tolerance = 0.0
         share = np.ceil(settings.samples * footprints["size"][chosen] ** 2)
         room = np.ceil(np.sqrt(share)).astype(np.int64) ** 2  # as many strata as a footprint has, and a few more
-        batch = np.cumsum(room * (goes + asks)) // RAYS
-        for some, strata in zip(
-            *(np.split(of, np.flatnonzero(np.diff(batch)) + 1) for of in (chosen, room)), strict=True
-        ):
+        ends = np.flatnonzero(np.diff(np.cumsum(room * (goes + asks)) // RAYS)) + 1
+        for some, strata in zip(np.split(chosen, ends), np.split(room, ends), strict=True):
             start = time.perf_counter()
             leaving, gone = np.zeros(strata.sum() * goes, RAY), np.zeros(1, np.int64)
             asking, asked = np.zeros(strata.sum() * asks, RAY), np.zeros(1, np.int64)
