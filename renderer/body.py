@@ -159,13 +159,16 @@ def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Bo
                 bool(obj["clear"]), 18 * count,
             )  # fmt: skip
     flat, slot, bend = sheet(pattern, window)
+    if shape != MESH:
+        kept = ~_inner(flat, window)
+        flat, slot, bend = flat[kept], slot[kept], bend[kept]
     coordinates, source, cell = cut(base, flat, CELL, LIMIT)
     if shape == MESH:
         coordinates[..., :2] = barycentric(base.pq[cell], coordinates[..., :2])[..., 1:]
     corners = carry(base, coordinates, cell)
     normals, slot, bend = facing(flat)[source], slot[source], bend[source]
     if shape == CYLINDER:
-        caps = _caps(base)
+        caps = _caps(base, float(flat[:, :, 2].min()))
         corners, coordinates = np.concatenate([corners, caps]), np.concatenate([coordinates, np.zeros_like(caps)])
         normals = np.concatenate([normals, np.tile([0.0, 0.0, 1.0], (len(caps), 1))])
         slot = np.concatenate([slot, np.full(len(caps), -1, np.int32)])
@@ -293,14 +296,30 @@ def places(corners: Floats) -> Ints:
     return np.unique(grid, axis=0, return_inverse=True)[1].reshape(-1, 3).astype(np.int32)
 
 
-def _caps(base: Base) -> Floats:
-    """A cylinder's two ends as triangles."""
+def _inner(flat: Floats, window: Floats) -> NDArray[np.bool_]:
+    """Which of the sheet's triangles (n, 3, 3) are sides along the seam that no sphere or cylinder has, as the grooves
+    are the same on both."""
+    left, right = (flat[:, :, 0] == window[0]).all(axis=1), (flat[:, :, 0] == window[2]).all(axis=1)
+    one, two = _moments(flat[left][:, :, 1:]), _moments(flat[right][:, :, 1:])
+    alike = np.allclose(one, two, rtol=1e-9, atol=1e-12 * float(np.abs(one).max()))
+    return np.asarray((left | right) & alike)
+
+
+def _moments(plane: Floats) -> Floats:
+    """Area, and means of x, y and their squares over triangles (n, 3, 2), all together."""
+    one, two = plane[:, 1] - plane[:, 0], plane[:, 2] - plane[:, 0]
+    area = 0.5 * np.abs(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])
+    square = ((plane**2).sum(axis=1) + plane.sum(axis=1) ** 2) / 12.0
+    return np.array([area.sum(), *(area @ plane.mean(axis=1)), *(area @ square)])
+
+
+def _caps(base: Base, bottom: float) -> Floats:
+    """A cylinder's two ends as triangles, as far as the sheet's sides there, which go down to the height `bottom`."""
+    radius = float(carry(base, np.array([[[*base.mapping[2:], bottom]]]), np.zeros(1, np.int32))[0, 0, 0])
     turn = np.linspace(0.0, 2.0 * math.pi, math.ceil(2.0 * math.pi / CELL) + 1)
     parts = []
     for side in (-1.0, 1.0):
-        rim = np.stack(
-            [base.size[0] * np.cos(turn), base.size[0] * np.sin(turn), np.full_like(turn, 0.5 * side * base.size[1])], 1
-        )
+        rim = np.stack([radius * np.cos(turn), radius * np.sin(turn), np.full_like(turn, 0.5 * side * base.size[1])], 1)
         middle = np.broadcast_to([0.0, 0.0, 0.5 * side * base.size[1]], (len(turn) - 1, 3))
         ring = (rim[:-1], rim[1:]) if side > 0.0 else (rim[1:], rim[:-1])
         parts.append(np.stack([middle, *ring], axis=1))

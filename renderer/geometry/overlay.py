@@ -68,7 +68,7 @@ def cut_by_grid(corners: Floats, p: Floats, q: Floats, parts: Floats, sources: I
     for t in range(len(corners)):
         # What is left is cut line by line, so that an edge comes to the same parts in both triangles that share it.
         above[:3] = corners[t]
-        j = max(np.searchsorted(q, above[:3, 1].min(), side="right") - 1, 0)
+        j = min(max(np.searchsorted(q, above[:3, 1].min(), side="right") - 1, 0), len(q) - 2)
         count = cut(above, 3, 0.0, 1.0, -q[j], rest)
         above[:count] = rest[:count]
         while count >= 3 and j + 1 < len(q):
@@ -76,7 +76,7 @@ def cut_by_grid(corners: Floats, p: Floats, q: Floats, parts: Floats, sources: I
             count = cut(above, count, 0.0, 1.0, -q[j + 1], rest)
             above[:count] = rest[:count]
             if across >= 3:
-                i = max(np.searchsorted(p, row[:across, 0].min(), side="right") - 1, 0)
+                i = min(max(np.searchsorted(p, row[:across, 0].min(), side="right") - 1, 0), len(p) - 2)
                 across = cut(row, across, 1.0, 0.0, -p[i], right)
                 while across >= 3 and i + 1 < len(p):
                     kept = cut(right, across, -1.0, 0.0, p[i + 1], part)
