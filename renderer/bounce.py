@@ -16,6 +16,8 @@ from renderer.geometry.curve import is_curved, sight_over
 from renderer.geometry.query import nearby
 from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.rays import LEVEL, follow
+from renderer.geometry.shapes import local
+from renderer.geometry.shell import ahead, chart, entered, from_world, is_round
 from renderer.geometry.solid import leveled, thin_of
 from renderer.geometry.spans import events
 from renderer.kernel import borrow, keep, kernel
@@ -63,9 +65,10 @@ def meet_sky(rays: NDArray[np.void], chosen: NDArray[np.int64], lighting: Lighti
 
 @kernel
 def meet_surface(
-    seed: int, pattern: Pattern, rays: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void],
-    blocked: NDArray[np.uint64], footprints: NDArray[np.void], lighting: Lighting, materials: NDArray[np.void],
-    slots: NDArray[np.int32], albedo: Floats, radiance: Floats, leaving: NDArray[np.void], gone: NDArray[np.int64],
+    seed: int, pattern: Pattern, objects: NDArray[np.void], rays: NDArray[np.void], chosen: NDArray[np.int64],
+    frames: NDArray[np.void], blocked: NDArray[np.uint64], footprints: NDArray[np.void], lighting: Lighting,
+    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, radiance: Floats, leaving: NDArray[np.void],
+    gone: NDArray[np.int64],
 ) -> None:  # fmt: skip
     """Rays RAY that meet one object, each at the origin of its FRAME: add what they see to their footprints' radiance.
 
@@ -78,6 +81,7 @@ def meet_surface(
     high, low = pattern.height + thin_of(pattern), -pattern.depth - thin_of(pattern)
     for k in chosen:
         ray, frame = rays[k], frames[k]
+        obj = objects[frame.object]
         footprint = footprints[ray.footprint]
         way = (ray.way[0], ray.way[1], ray.way[2])
         d = direction_to_pattern(frame, way)
@@ -88,11 +92,20 @@ def meet_surface(
         if is_curved(frame) and len(pattern.pieces) > 0:  # the chord where it is over the base
             p, q, gp, gq = sight_over(frame, p, q, slope_p, slope_q, high, low)
         start = (p + w * gp, q + w * gq, w)
+        if is_round(obj, frame):
+            o = from_world(obj, (ray.origin[0], ray.origin[1], ray.origin[2]))
+            line = local(obj, way[0], way[1], way[2])
+            at = from_world(obj, (frame.origin[0], frame.origin[1], frame.origin[2]))
+            hit = (at[0] - o[0]) * line[0] + (at[1] - o[1]) * line[1] + (at[2] - o[2]) * line[2]
+            start = chart(obj, ahead(o, line, entered(pattern, obj, o, line, frame.within == 1, hit)))
+        before = gone[0]
         colour = follow(
             ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, (gp - slope_p, gq - slope_q),
-            frame.within == 1, ray.number, seed, ray.footprint, footprint.x, footprint.y, blocked[k], pattern, frame,
-            lighting, materials, slots, albedo, found, spans, leaving, gone,
+            frame.within == 1, ray.number, seed, ray.footprint, footprint.x, footprint.y, blocked[k], pattern, obj,
+            frame, lighting, materials, slots, albedo, found, spans, leaving, gone,
         )  # fmt: skip
+        if gone[0] > before and frame.within == 1 and leaving[before].within and leaving[before].bounces == ray.bounces:
+            gone[0] = before  # it has met nothing on its way out, by rounding, and never would
         for c in range(3):
             radiance[ray.footprint, c] += colour[c]
     keep(owned)
@@ -168,7 +181,7 @@ def meet(
                 chosen = np.flatnonzero((hits["object"] == row) & which)
                 if len(chosen):
                     meet_surface(
-                        seed, pattern, rays, chosen, frames, blocked, footprints, lighting, materials, slots[row],
-                        albedo, radiance, leaving, gone,
+                        seed, pattern, shapes.objects, rays, chosen, frames, blocked, footprints, lighting, materials,
+                        slots[row], albedo, radiance, leaving, gone,
                     )  # fmt: skip
         rays = leaving[: gone[0]]

@@ -18,9 +18,10 @@ from renderer.geometry.curve import ROUGH, is_curved, light_over, sight_over, st
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import jitter, seed_of, strewn
 from renderer.geometry.rays import follow
+from renderer.geometry.shell import is_round, is_shaded, placed, raised, seen_from
 from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_ray, thin_of
 from renderer.geometry.spans import events
-from renderer.geometry.view import on_plane, view_of
+from renderer.geometry.view import on_plane, through_screen, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.scattering import scatter
 from renderer.shading import (
@@ -29,11 +30,12 @@ from renderer.shading import (
     light_to_pattern,
     lit_by,
     normal_to_world,
+    sky_from,
     to_world,
     unit,
     white,
 )
-from renderer.tables import CSG, NOT_MINE, Camera, Lighting, Pattern
+from renderer.tables import CSG, NOT_MINE, POINT, Camera, Lighting, Pattern
 
 SHARED = fixed(32)  # up to so many pieces are found once for all samples of a footprint
 FEW = 2  # with a tolerance, and no more pieces near than this, it begins with
@@ -48,9 +50,9 @@ SURE = 0.5  # how much of the tolerance the standard error may take
 def csg(
     samples: int, bounces: int, indirect: bool, tolerance: float, sparing: bool, seed: int, leaving: NDArray[np.void],
     gone: NDArray[np.int64], asking: NDArray[np.void], asked: NDArray[np.int64], pattern: Pattern,
-    footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera,
-    lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: NDArray[np.float64],
-    radiance: NDArray[np.float64], method: NDArray[np.uint8],
+    footprints: NDArray[np.void], chosen: NDArray[np.int64], objects: NDArray[np.void], frames: NDArray[np.void],
+    camera: Camera, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32],
+    albedo: NDArray[np.float64], radiance: NDArray[np.float64], method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
@@ -75,8 +77,9 @@ def csg(
     for index in chosen:
         footprint = footprints[index]
         frame = frames[footprint.frame]
+        obj = objects[frame.object]
         view = view_of(footprint, frame, camera)
-        curved = is_curved(frame)
+        curved, rounded = is_curved(frame), is_round(obj, frame)
         dw = frame.eye[2]
         top = min(high + thin, dw * (1.0 - 1e-9))
 
@@ -128,7 +131,11 @@ def csg(
             if 0 <= shared <= FEW and bounces == 0:
                 across, down, corners = PROBE, PROBE, 4
             target = tolerance
-            if curved and straightened(pattern, frame, view.p, view.q, footprint.blocked, lights) > ROUGH:
+            if (
+                curved
+                and not rounded
+                and straightened(pattern, frame, view.p, view.q, footprint.blocked, lights) > ROUGH
+            ):
                 target = max(tolerance, GRAINY)
             target *= SURE / ease * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)
@@ -150,14 +157,24 @@ def csg(
                     state, ju = jitter(state)
                     state, jv = jitter(state)
                     u, v = (i % across + ju) / across, (i // across + jv) / down
-                p, q = on_plane(view, u, v)
-                gp, gq = (frame.eye[0] - p) / dw, (frame.eye[1] - q) / dw
-                if curved:
-                    p, q, gp, gq = sight_over(frame, p, q, gp, gq, top, low - thin)
-                m = meet(pattern, found, spans, shared, p, q, gp, gq, top, low - thin, DOWN)
-                at = max(polish(pattern, found, m, p, q, gp, gq), low)
-                x, y = p + at * gp, q + at * gq
+                if rounded:
+                    sight = unit(
+                        through_screen(camera, footprint.x + u * footprint.size, footprint.y + v * footprint.size)
+                    )
+                    passed = seen_from(pattern, found, spans, obj, (eye[0], eye[1], eye[2]), sight)
+                    m, x, y, at, gp, gq = passed.meeting, passed.x, passed.y, passed.w, passed.gp, passed.gq
+                else:
+                    p, q = on_plane(view, u, v)
+                    gp, gq = (frame.eye[0] - p) / dw, (frame.eye[1] - q) / dw
+                    if curved:
+                        p, q, gp, gq = sight_over(frame, p, q, gp, gq, top, low - thin)
+                    m = meet(pattern, found, spans, shared, p, q, gp, gq, top, low - thin, DOWN)
+                    at = max(polish(pattern, found, m, p, q, gp, gq), low)
+                    x, y = p + at * gp, q + at * gq
+                missed = rounded and m.w == -math.inf and not indirect
                 n = normal_of(pattern, found, m, x, y, gp, gq)
+                if rounded and not passed.descends:
+                    n = (-n[0], -n[1], -n[2])
                 slot = 0
                 if m.found >= 0:
                     item = found.piece[m.found]
@@ -166,52 +183,74 @@ def csg(
                 else:
                     item = -1
                 material = materials[slots[slot]]
-                facing = turned(frame, x - frame.pq[0], y - frame.pq[1], at, n) if curved else n
-                n_world = normal_to_world(frame, facing)
-                at_world = to_world(frame, x, y, at)
+                if rounded:
+                    n_world, at_world = raised(obj, x, y, at, n), placed(obj, x, y, at)
+                else:
+                    facing = turned(frame, x - frame.pq[0], y - frame.pq[1], at, n) if curved else n
+                    n_world, at_world = normal_to_world(frame, facing), to_world(frame, x, y, at)
                 e = unit((eye[0] - at_world[0], eye[1] - at_world[1], eye[2] - at_world[2]))
-                if curved and dot(n_world, e) <= 0.0:  # next to the outline, by the second order
+                if curved and not rounded and dot(n_world, e) <= 0.0:  # next to the outline, by the second order
                     facing, n_world = n, normal_to_world(frame, n)
                 colour = (material.emissive[0], material.emissive[1], material.emissive[2])
                 if bounces == 0:
                     colour = ambient(material, lighting, albedo, n_world, e)
+                if missed:  # through the grooves at the outline, to what is behind
+                    colour = (0.0, 0.0, 0.0)
+                    if len(leaving) == 0:
+                        colour = sky_from(lighting, sight)
+                    else:
+                        ray = leaving[gone[0]]
+                        gone[0] += 1
+                        for axis in range(3):
+                            ray.origin[axis], ray.way[axis], ray.through[axis] = at_world[axis], sight[axis], 1.0
+                        ray.footprint, ray.number, ray.bounces, ray.object = index, i, bounces + 1, frame.object
+                        ray.within, ray.clear = 0, 0.0
                 if not indirect:
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 lit = np.uint64(0)
                 off = lift(pattern, found, m) / math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
                 sx, sy, sw = x + off * n[0], y + off * n[1], at + off * n[2]
-                for l in range(0 if indirect else len(lights)):
+                for l in range(0 if indirect or missed else len(lights)):
                     torn = len(asking) > 0 and (footprint.torn >> np.uint64(l)) & np.uint64(1) != 0
                     if not torn and (footprint.blocked >> np.uint64(l)) & np.uint64(1):
-                        continue
-                    d = light_to_pattern(frame, lights[l])
-                    lp, lq, lw = d[0] - d[3] * x, d[1] - d[3] * y, d[2] - d[3] * at
-                    if facing[0] * lp + facing[1] * lq + facing[2] * lw <= 0.0:
-                        continue
-                    if curved:
-                        d = light_over(pattern.height, pattern.width, frame, lights[l], x, y, at, at)
-                    if d[2] <= 0.0:
                         continue
                     colour = lit_by(lights[l], material, n_world, e, at_world)
                     if colour[0] <= 0.0 and colour[1] <= 0.0 and colour[2] <= 0.0:
                         continue
-                    lp, lq, roof, ground, way = shadow_ray(pattern, d, sx, sy, sw)
-                    if roof > ground:
-                        s = meet(pattern, found, spans, shared, sx - sw * lp, sy - sw * lq, lp, lq, roof, ground, way)
-                        if s.w > -math.inf:
+                    if rounded:
+                        if is_shaded(pattern, found, spans, obj, lights[l], sx, sy, sw):
                             continue
+                    else:
+                        d = light_to_pattern(frame, lights[l])
+                        lp, lq, lw = d[0] - d[3] * x, d[1] - d[3] * y, d[2] - d[3] * at
+                        if facing[0] * lp + facing[1] * lq + facing[2] * lw <= 0.0:
+                            continue
+                        if curved:
+                            d = light_over(pattern.height, pattern.width, frame, lights[l], x, y, at, at)
+                        if d[2] <= 0.0:
+                            continue
+                        lp, lq, roof, ground, up = shadow_ray(pattern, d, sx, sy, sw)
+                        if roof > ground:
+                            s = meet(
+                                pattern, found, spans, shared, sx - sw * lp, sy - sw * lq, lp, lq, roof, ground, up
+                            )
+                            if s.w > -math.inf:
+                                continue
                     if torn:
                         ray, place = asking[asked[0]], to_world(frame, sx, sy, sw)
+                        if rounded:
+                            place = placed(obj, sx, sy, sw)
+                        near = lights[l].kind == POINT
                         asked[0] += 1
                         for axis in range(3):
                             ray.origin[axis], ray.through[axis] = place[axis], colour[axis]
-                            ray.way[axis] = lights[l].vector[axis] - d[3] * place[axis]
+                            ray.way[axis] = lights[l].vector[axis] - (place[axis] if near else 0.0)
                         ray.footprint, ray.number, ray.object = index, l, frame.object
-                        ray.clear = 1.0 - 1e-9 if d[3] != 0.0 else math.inf
+                        ray.clear = 1.0 - 1e-9 if near else math.inf
                         continue
                     lit |= np.uint64(1) << np.uint64(l)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
-                if bounces > 0:
+                if bounces > 0 and not missed:
                     lobe, bu, bv = strewn(i, seed, footprint.x, footprint.y)
                     out, through = scatter(material, albedo, n_world, e, lobe, bu, bv, False)
                     if max(through[0], through[1], through[2]) > 0.0:
@@ -220,8 +259,8 @@ def csg(
                             sx, sy, sw = sx - 2.0 * off * n[0], sy - 2.0 * off * n[1], sw - 2.0 * off * n[2]
                         colour = follow(
                             bounces, through, out, (sx, sy, sw), (0.0, 0.0), within, i, seed, index, footprint.x,
-                            footprint.y, footprint.blocked, pattern, frame, lighting, materials, slots, albedo, around,
-                            spans, leaving, gone,
+                            footprint.y, footprint.blocked, pattern, obj, frame, lighting, materials, slots, albedo,
+                            around, spans, leaving, gone,
                         )  # fmt: skip
                         red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 if i == -corners:
@@ -273,7 +312,7 @@ def csg(
         radiance[index, 1] += green / taken
         radiance[index, 2] += blue / taken
         radiance[index, 3] += error / SURE * ease
-        if curved:
+        if curved and not rounded:
             radiance[index, 3] += unsure(frame, max(p0 - fp0, fp1 - p1, q0 - fq0, fq1 - q1, pattern.width))
         radiance[index, 4] += float(looked) * max(shared, 1)
     keep(owned)

@@ -19,12 +19,17 @@ LEVELS = 4  # splits of a pixel on an edge: 256 footprints at most
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
 TURN = 0.25  # ... nor by more than 1 - cosine = TURN * tolerance (measured): a tangent plane errs as that does
 TURNS = 2  # splits for that alone: a mesh may turn in every triangle, however small
+OPEN = 1.5  # times the depth of the grooves: a footprint's corners may be seen at less slope than its centre
 
 
 class Shapes(Protocol):
     """What meets the camera's rays: `raycast.Caster`."""
 
     objects: NDArray[np.void]
+
+    @property
+    def shadows(self) -> bool:
+        """Whether one part of the scene may stand in the light of another."""
 
     def hits(self, origin: Floats, directions: Floats) -> NDArray[np.void]:
         """The nearest HIT (n,) of each ray from `origin` (3,) along `directions` (n, 3)."""
@@ -122,7 +127,9 @@ def footprints(
             corner_mask = shapes.blocked(camera.origin, directions, corners, lights)
             around = np.arange(len(corners)).reshape(4, -1)
     out = _joined(done)
-    mark_torn(shapes, camera, lights, heights, out)
+    if shapes.shadows:
+        mark_torn(shapes, camera, lights, heights, out)
+    mark_open(shapes, heights, out)
     return out
 
 
@@ -149,6 +156,18 @@ def mark_torn(
             points = camera.origin + t[:, None] * way
             differ = shapes.blocked_off(points, own[which].astype(np.int32), lights) ^ some["blocked"]
             prints["torn"][which] |= np.where(meets, differ, np.uint64(0))
+
+
+def mark_open(shapes: Shapes, heights: Floats, seen: Footprints) -> None:
+    """Find the footprints where sight, gone on from the bare shape, comes out again above the grooves' depth: at a
+    slope s to a surface that falls by b along it, it gets s^2 / (2 b) deep."""
+    frames = seen.frames
+    own = frames["object"]
+    slope, (x, y), (a, b, c) = frames["eye"][:, 2], (frames["eye"][:, :2] - frames["pq"]).T, frames["form"].T
+    falls = 2.0 * (a * x * x + 2.0 * b * x * y + c * y * y)
+    carries = (frames["grooved"] != 0) & (frames["within"] == 0) & (shapes.objects["shape"][own] != MESH)
+    deep = OPEN * heights[own, 1]
+    seen.footprints["open"] = (carries & (slope * slope < falls * deep))[seen.footprints["frame"]]
 
 
 def _inside(x: Floats, y: Floats, seed: int) -> Floats:

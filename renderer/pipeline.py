@@ -174,7 +174,7 @@ class Frame:
         """
         scene, settings = self.scene, self.settings
         part = Part(row, pattern, seen, scene.lighting, radiance, method, spent)
-        torn = seen.footprints["torn"][chosen] != 0
+        torn = (seen.footprints["torn"][chosen] != 0) | (seen.footprints["open"][chosen] != 0)
         if torn.any():
             self._sample(part, chosen[torn], 0.0, settings.bounces)
             chosen = chosen[~torn]
@@ -274,10 +274,11 @@ class Frame:
     ) -> None:  # fmt: skip
         """Shade footprints by `csg`; rays go from facet to facet, and on to other objects if there are any.
 
-        indirect: add what these bring to what is there. Of what is torn, all of `chosen` or nothing.
+        indirect: add what these bring to what is there. Of what is torn or open, all of
+        `chosen` or nothing.
         """
         settings, footprints = self.settings, part.seen.footprints
-        goes = bounces > 0 and self.rays_go_on
+        goes = self.rays_go_on and (bounces > 0 or bool(footprints["open"][chosen].any()))
         asks = len(part.lighting.lights) if not indirect and footprints["torn"][chosen].any() else 0
         if goes or asks:
             tolerance = 0.0
@@ -290,7 +291,7 @@ class Frame:
             asking, asked = np.zeros(strata.sum() * asks, RAY), np.zeros(1, np.int64)
             csg(
                 settings.samples, bounces, indirect, tolerance, sparing, settings.seed, leaving, gone, asking, asked,
-                part.pattern, footprints, some, *self._of(part),
+                part.pattern, footprints, some, self.scene.objects, *self._of(part),
             )  # fmt: skip
             part.took("csg", start)
             start = time.perf_counter()
@@ -384,7 +385,7 @@ def _frame(compiled: CompiledScene, settings: Settings, model: Truth | Textures 
     width, height = compiled.resolution
     heights = np.zeros((len(compiled.objects), 2))
     for row, index in enumerate(compiled.objects["pattern"]):
-        if index >= 0 and caster.shadows and settings.method in ("auto", "lines", "area", "csg"):
+        if index >= 0 and settings.method in ("auto", "lines", "area", "csg"):
             heights[row] = compiled.patterns[index].height, compiled.patterns[index].depth
     lit = settings.bounces > 0 or bool(compiled.lighting.sky.any()) or len(compiled.lighting.surroundings.tables) > 0
     return Frame(

@@ -251,6 +251,7 @@ FOOTPRINT = np.dtype(
         ("frame", "i4"),  # row of FRAME
         ("blocked", "u8"),  # bit l: another object stands between the surface and light l,
         ("torn", "u8"),  # ... or between that and the highest or the lowest points of the grooves, but not both
+        ("open", "u1"),  # 1: sight may pass through the grooves at a sphere's or a cylinder's outline
         ("x", "f8"), ("y", "f8"), ("size", "f8"),  # its square on the screen: left, top, edge; in pixels
     ]
 )  # fmt: skip

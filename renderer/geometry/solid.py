@@ -83,7 +83,7 @@ def first(e: Events, n: int, high: float, low: float, thin: float) -> tuple[floa
     begin(e, n)
     below = high <= 0.0
     k = 0
-    if below and n == 0:
+    if below and (n == 0 or e.w[e.order[0]] < high - thin):
         return high, PLANE, -1
     while k < n or not below:
         at = e.w[e.order[k]] if k < n else -math.inf
@@ -114,7 +114,7 @@ def last(e: Events, n: int, high: float, low: float, thin: float, way: int) -> t
     begin(e, n)
     below = high <= 0.0
     found, owner, what = -math.inf, -1, PLANE
-    solid = way == SINK  # where a ray ends that goes up, it is not stopped
+    solid = below or way == SINK  # where a stretch of a ray ends that goes up, it may be inside
     k = 0
     while k < n or not below:
         at = e.w[e.order[k]] if k < n else -math.inf
@@ -132,6 +132,8 @@ def last(e: Events, n: int, high: float, low: float, thin: float, way: int) -> t
                 facet, by = e.change[e.order[k], 3], e.change[e.order[k], 4]
             k += 1
         now = is_solid(e, below)
+        if way != SINK and at >= high - thin:  # the state it ends in
+            solid = now
         if solid != now and now == (way == RISE):
             found, what, owner = at, facet, by
             if way == SINK:

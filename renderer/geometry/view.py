@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from renderer.kernel import leaf
-from renderer.shading import direction_to_pattern
+from renderer.shading import Vector, direction_to_pattern
 from renderer.tables import Camera
 
 
@@ -38,13 +38,19 @@ map is then replaced by its tangent at the centre. It happens on curved objects 
 
 
 @leaf
+def through_screen(camera: Camera, x: float, y: float) -> Vector:
+    """The direction of the ray through the screen point (x, y), pixels, in the world; no unit vector."""
+    c, r, d = camera.corner, camera.right, camera.down
+    return c[0] + x * r[0] + y * d[0], c[1] + x * r[1] + y * d[1], c[2] + x * r[2] + y * d[2]
+
+
+@leaf
 def view_of(footprint: np.void, frame: np.void, camera: Camera) -> View:
     """The projective map of a footprint."""
     size = footprint.size
     x, y = footprint.x, footprint.y
-    c, r, d = camera.corner, camera.right, camera.down
-    w0 = (c[0] + x * r[0] + y * d[0], c[1] + x * r[1] + y * d[1], c[2] + x * r[2] + y * d[2])
-    v0 = direction_to_pattern(frame, w0)
+    r, d = camera.right, camera.down
+    v0 = direction_to_pattern(frame, through_screen(camera, x, y))
     vu = direction_to_pattern(frame, (size * r[0], size * r[1], size * r[2]))
     vv = direction_to_pattern(frame, (size * d[0], size * d[1], size * d[2]))
     dp, dq, dw = frame.eye[0], frame.eye[1], frame.eye[2]
@@ -74,7 +80,4 @@ def on_plane(view: View, u: float, v: float) -> tuple[float, float]:
 @leaf
 def slope_at(x: float, y: float, frame: np.void, camera: Camera) -> float:
     """How fast the ray through the screen point (x, y) falls to the base plane: the direction's w, below 0."""
-    c, r, d = camera.corner, camera.right, camera.down
-    return direction_to_pattern(
-        frame, (c[0] + x * r[0] + y * d[0], c[1] + x * r[1] + y * d[1], c[2] + x * r[2] + y * d[2])
-    )[2]
+    return direction_to_pattern(frame, through_screen(camera, x, y))[2]

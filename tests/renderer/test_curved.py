@@ -1,8 +1,8 @@
 """Grooves and ridges on round shapes, where the base falls away from its tangent plane within the reach of a shadow.
 
 FRAME.form is held against the map of the ground truth, pictures against the ground truth itself: where the base is seen
-at more than 20 degrees, as no method but `geometry` bends the silhouette. How much the form is worth is measured by
-taking it away, which leaves the tangent plane.
+at more than 20 degrees, as no method but `geometry` shows ridges that stand out at the outline. How much the form is
+worth is measured by taking it away, which leaves the tangent plane. `test_shell` has what `csg` does exactly.
 """
 
 from __future__ import annotations
@@ -224,9 +224,9 @@ def test_shadows_in_grooves_follow_the_base(shape: str, radiance: Radiance) -> N
 
 
 @pytest.mark.parametrize("shape", ["sphere", "cylinder"])
-@pytest.mark.parametrize(("method", "worth"), [("csg", 0.25), ("area", 0.6), ("auto", 0.4)])
+@pytest.mark.parametrize(("method", "worth"), [("csg", 0.12), ("area", 0.6), ("auto", 0.4)])
 def test_crossing_ridges_in_low_light(method: str, worth: float, shape: str, radiance: Radiance) -> None:
-    """The tangent plane's error falls to 12 and 20 % (`csg`), 41 and 51 % (`area`), 34 % (`auto`): measured."""
+    """The tangent plane's error falls to 41 and 51 % (`area`), 34 % (`auto`): measured."""
     grooves = [row(0.1, 0.025, 30), row(0.1, 0.025, 20, across=True)]
     off, flat = errors(scene(shape, grooves, 12.0), shape, method, radiance)
     assert flat > 0.01
