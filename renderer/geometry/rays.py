@@ -83,7 +83,7 @@ def follow(
     emerged = False
     x, y, w = start
     for left in range(bounces, 0, -1):
-        clear = 0.0
+        clear = 0.0  # within a sphere or a cylinder the farthest place is met, whatever is before
         if rounded:
             o = carried(obj, x, y, w)
             d = local(obj, way[0], way[1], way[2])

@@ -50,7 +50,6 @@ class Passage(NamedTuple):
     gp: float  # the slope of the chord
     gq: float
     descends: bool
-    t: float  # in lengths of the ray's direction
     leaves: bool  # where nothing was met: it goes on in the air, or in the body below the grooves
 
 
@@ -230,7 +229,7 @@ def pass_through(
     if len(pattern.pieces) == 0:
         rises = m[1] + m[0] * t > 0.0
         meeting = Meeting(0.0, PLANE, -1, BODY) if rises == within else OPEN
-        return Passage(meeting, here[0], here[1], 0.0, 0.0, 0.0, not rises, t, rises != within)
+        return Passage(meeting, here[0], here[1], 0.0, 0.0, 0.0, not rises, rises != within)
     final, leaves = left_at(pattern, obj, o, d, m, begin, within)
     final = min(final, end)
     nearest = min(max(-m[1] / m[0], begin), final) if m[0] > 0.0 else begin  # where it is deepest, and most level
@@ -268,12 +267,11 @@ def pass_through(
         met = meet(pattern, found, spans, -1, p, q, gp, gq, top, bottom, way)
         if met.w > -math.inf:
             w = met.w if asks else polish(pattern, found, met, p, q, gp, gq)
-            t += min(max((w - here[2]) / rise, 0.0), 1.0) * (until - t)
-            return Passage(met, p + w * gp, q + w * gq, w, gp, gq, descends, t, False)
+            return Passage(met, p + w * gp, q + w * gq, w, gp, gq, descends, False)
         t, here = until, place
         if t >= final:
             break
-    return Passage(OPEN, here[0], here[1], here[2], gp, gq, descends, t, leaves)
+    return Passage(OPEN, here[0], here[1], here[2], gp, gq, descends, leaves)
 
 
 @leaf
@@ -297,7 +295,7 @@ def seen_from(
         return passed
     x = chart(obj, ahead(o, d, bare))
     meeting = OPEN if len(pattern.pieces) > 0 else Meeting(0.0, PLANE, -1, BODY)
-    return Passage(meeting, x[0], x[1], 0.0, 0.0, 0.0, True, bare, True)
+    return Passage(meeting, x[0], x[1], 0.0, 0.0, 0.0, True, True)
 
 
 @leaf
