@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from renderer.geometry.curve import is_curved, sight_over
 from renderer.geometry.query import nearby
 from renderer.geometry.random import jitter, seed_of
-from renderer.geometry.rays import LEVEL, follow
+from renderer.geometry.rays import follow
 from renderer.geometry.shapes import local
-from renderer.geometry.shell import ahead, chart, entered, from_world, is_round
+from renderer.geometry.shell import LEVEL, ahead, chart, entered, from_world, is_round
 from renderer.geometry.solid import leveled, thin_of
 from renderer.geometry.spans import events
 from renderer.kernel import borrow, keep, kernel
@@ -84,23 +84,24 @@ def meet_surface(
         obj = objects[frame.object]
         footprint = footprints[ray.footprint]
         way = (ray.way[0], ray.way[1], ray.way[2])
-        d = direction_to_pattern(frame, way)
-        rise = leveled(d[0], d[1], d[2], LEVEL)
-        w = low if frame.within == 1 else high
-        slope_p, slope_q = d[0] / rise, d[1] / rise
-        p, q, gp, gq = frame.pq[0], frame.pq[1], slope_p, slope_q
-        if is_curved(frame) and len(pattern.pieces) > 0:  # the chord where it is over the base
-            p, q, gp, gq = sight_over(frame, p, q, slope_p, slope_q, high, low)
-        start = (p + w * gp, q + w * gq, w)
+        steer = (0.0, 0.0)
         if is_round(obj, frame):
-            o = from_world(obj, (ray.origin[0], ray.origin[1], ray.origin[2]))
-            line = local(obj, way[0], way[1], way[2])
+            o, d = from_world(obj, (ray.origin[0], ray.origin[1], ray.origin[2])), local(obj, way[0], way[1], way[2])
             at = from_world(obj, (frame.origin[0], frame.origin[1], frame.origin[2]))
-            hit = (at[0] - o[0]) * line[0] + (at[1] - o[1]) * line[1] + (at[2] - o[2]) * line[2]
-            start = chart(obj, ahead(o, line, entered(pattern, obj, o, line, frame.within == 1, hit)))
+            hit = (at[0] - o[0]) * d[0] + (at[1] - o[1]) * d[1] + (at[2] - o[2]) * d[2]
+            start = chart(obj, ahead(o, d, entered(pattern, obj, o, d, frame.within == 1, hit)))
+        else:
+            d = direction_to_pattern(frame, way)
+            rise = leveled(d[0], d[1], d[2], LEVEL)
+            w = low if frame.within == 1 else high
+            slope_p, slope_q = d[0] / rise, d[1] / rise
+            p, q, gp, gq = frame.pq[0], frame.pq[1], slope_p, slope_q
+            if is_curved(frame) and len(pattern.pieces) > 0:  # the chord where it is over the base
+                p, q, gp, gq = sight_over(frame, p, q, slope_p, slope_q, high, low)
+            start, steer = (p + w * gp, q + w * gq, w), (gp - slope_p, gq - slope_q)
         before = gone[0]
         colour = follow(
-            ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, (gp - slope_p, gq - slope_q),
+            ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, steer,
             frame.within == 1, ray.number, seed, ray.footprint, footprint.x, footprint.y, blocked[k], pattern, obj,
             frame, lighting, materials, slots, albedo, found, spans, leaving, gone,
         )  # fmt: skip

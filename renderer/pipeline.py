@@ -174,10 +174,10 @@ class Frame:
         """
         scene, settings = self.scene, self.settings
         part = Part(row, pattern, seen, scene.lighting, radiance, method, spent)
-        torn = (seen.footprints["torn"][chosen] != 0) | (seen.footprints["open"][chosen] != 0)
-        if torn.any():
-            self._sample(part, chosen[torn], 0.0, settings.bounces)
-            chosen = chosen[~torn]
+        sampled = (seen.footprints["torn"][chosen] != 0) | (seen.footprints["open"][chosen] != 0)
+        if sampled.any():
+            self._sample(part, chosen[sampled], 0.0, settings.bounces)
+            chosen = chosen[~sampled]
         if settings.bounces == 0 or settings.method == "relief":
             self._direct(part, chosen)
             return
@@ -274,8 +274,8 @@ class Frame:
     ) -> None:  # fmt: skip
         """Shade footprints by `csg`; rays go from facet to facet, and on to other objects if there are any.
 
-        indirect: add what these bring to what is there. Of what is torn or open, all of
-        `chosen` or nothing.
+        indirect: add what these bring to what is there. Of what is torn or open, all of `chosen` or
+        nothing.
         """
         settings, footprints = self.settings, part.seen.footprints
         goes = self.rays_go_on and (bounces > 0 or bool(footprints["open"][chosen].any()))

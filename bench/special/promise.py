@@ -31,7 +31,7 @@ TOLERANCES = (0.01, 0.003, 0.001)
 SHARE = 0.95
 SIZE = (32, 24)
 SAMPLES, PASSES = 4096, {"scratches": (2, 64)}  # of the reference, else two passes: scratches glint
-TRUTH = {"hieroglyphs": "geometry", "brushed": "geometry"}  # else `csg`, which errs where `auto` does on curved bases
+TRUTH = {"hieroglyphs": "geometry", "brushed": "geometry"}  # else `csg`, which on meshes errs where `auto` does
 LADDER = (16, 64, 256, 1024)  # samples of csg
 RUNS = 3
 

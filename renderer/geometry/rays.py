@@ -11,7 +11,7 @@ from renderer.geometry.curve import bent, is_curved, turned
 from renderer.geometry.query import Nearby
 from renderer.geometry.random import drawn
 from renderer.geometry.shapes import local
-from renderer.geometry.shell import carried, is_round, is_shaded, pass_through, placed, raised
+from renderer.geometry.shell import LEVEL, carried, is_round, is_shaded, pass_through, placed, raised
 from renderer.geometry.solid import (
     DOWN,
     OPEN,
@@ -42,9 +42,6 @@ from renderer.shading import (
     to_world,
 )
 from renderer.tables import Floats, Lighting, Pattern
-
-LEVEL = 1e-3
-"""A ray's slope to the plane is taken for at least this: more level ones run over very many grooves to no end."""
 
 
 @callee

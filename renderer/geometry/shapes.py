@@ -53,6 +53,17 @@ def local(obj: np.void, x: float, y: float, z: float) -> Vector:
 
 
 @leaf
+def out_of(obj: np.void, x: Vector) -> Vector:
+    """A vector in the object's axes in the world."""
+    r = obj.rotation
+    return (
+        r[0, 0] * x[0] + r[0, 1] * x[1] + r[0, 2] * x[2],
+        r[1, 0] * x[0] + r[1, 1] * x[1] + r[1, 2] * x[2],
+        r[2, 0] * x[0] + r[2, 1] * x[1] + r[2, 2] * x[2],
+    )
+
+
+@leaf
 def meet_shape(
     obj: np.void, o: tuple[float, float, float], d: tuple[float, float, float], far: float, within: bool
 ) -> tuple[float, int]:
@@ -138,10 +149,7 @@ def cast(objects: NDArray[np.void], origins: Floats, directions: Floats, own: In
             if t < hit.t:
                 hit.object, hit.face, hit.t = k, face, t
                 hit.u, hit.v, nx, ny, nz = touch(obj, face, o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2])
-                r = obj.rotation
-                hit.normal[0] = r[0, 0] * nx + r[0, 1] * ny + r[0, 2] * nz
-                hit.normal[1] = r[1, 0] * nx + r[1, 1] * ny + r[1, 2] * nz
-                hit.normal[2] = r[2, 0] * nx + r[2, 1] * ny + r[2, 2] * nz
+                hit.normal[0], hit.normal[1], hit.normal[2] = out_of(obj, (nx, ny, nz))
 
 
 @kernel
@@ -301,7 +309,6 @@ def frames_at(
         m = obj.mapping
         frame.pq[0], frame.pq[1] = hit.u * m[0] + m[2], hit.v * m[1] + m[3]
         a, b = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-        r = obj.rotation
         if obj.shape == MESH:
             uv, c = triangles.uv[hit.face], triangles.corners[hit.face]
             u1, v1, u2, v2 = uv[1, 0] - uv[0, 0], uv[1, 1] - uv[0, 1], uv[2, 0] - uv[0, 0], uv[2, 1] - uv[0, 1]
@@ -338,16 +345,7 @@ def frames_at(
             else:
                 lu = (-2.0 * math.pi * y, 2.0 * math.pi * x, 0.0)
                 lv = (0.0, 0.0, obj.size[1])
-            a = (
-                r[0, 0] * lu[0] + r[0, 1] * lu[1] + r[0, 2] * lu[2],
-                r[1, 0] * lu[0] + r[1, 1] * lu[1] + r[1, 2] * lu[2],
-                r[2, 0] * lu[0] + r[2, 1] * lu[1] + r[2, 2] * lu[2],
-            )
-            b = (
-                r[0, 0] * lv[0] + r[0, 1] * lv[1] + r[0, 2] * lv[2],
-                r[1, 0] * lv[0] + r[1, 1] * lv[1] + r[1, 2] * lv[2],
-                r[2, 0] * lv[0] + r[2, 1] * lv[1] + r[2, 2] * lv[2],
-            )
+            a, b = out_of(obj, lu), out_of(obj, lv)
         a = (a[0] / m[0], a[1] / m[0], a[2] / m[0])
         b = (b[0] / m[1], b[1] / m[1], b[2] / m[1])
         turned = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0

@@ -1,4 +1,4 @@
-"""Rays through the grooves of a sphere or a cylinder, exactly but for a stated part of the grooves' height.
+"""Rays through the grooves of a sphere or a cylinder, exactly but for STRAY of their height (more next to the poles).
 
 The solid over such a base is P(p, q) + w sigma N (DESIGN 1.2), which can be turned round in closed form: a place in the
 object's axes has its (p, q, w), and a ray is a curve in pattern space. Through the shell that the grooves fill it is
@@ -15,7 +15,7 @@ import numpy as np
 
 from renderer.geometry.curve import is_curved
 from renderer.geometry.query import Nearby
-from renderer.geometry.shapes import Vector, local, solve
+from renderer.geometry.shapes import Vector, local, out_of, solve
 from renderer.geometry.solid import (
     DOWN,
     OPEN,
@@ -35,7 +35,9 @@ from renderer.shading import unit
 from renderer.tables import CYLINDER, POINT, SPHERE, Pattern
 
 STRAY = 0.003  # of the grooves' height: so far a chord may be from its ray
-LEVEL = 1e-3  # the slope of a chord to the plane, at least
+LEVEL = (
+    1e-3  # a ray's slope to the plane is taken for at least this: more level ones run over very many grooves to no end
+)
 POLAR = 0.1  # the cosine of a latitude, at least, where the length of chords goes by it
 CHORDS = 1000  # of a ray, at most
 
@@ -97,20 +99,9 @@ def carried(obj: np.void, p: float, q: float, w: float) -> Vector:
 
 
 @leaf
-def to_world(obj: np.void, x: Vector) -> Vector:
-    """A vector in the object's axes in the world."""
-    r = obj.rotation
-    return (
-        r[0, 0] * x[0] + r[0, 1] * x[1] + r[0, 2] * x[2],
-        r[1, 0] * x[0] + r[1, 1] * x[1] + r[1, 2] * x[2],
-        r[2, 0] * x[0] + r[2, 1] * x[1] + r[2, 2] * x[2],
-    )
-
-
-@leaf
 def placed(obj: np.void, p: float, q: float, w: float) -> Vector:
     """The place in the world of (p, q, w)."""
-    x, s = to_world(obj, carried(obj, p, q, w)), obj.translation
+    x, s = out_of(obj, carried(obj, p, q, w)), obj.translation
     return s[0] + x[0], s[1] + x[1], s[2] + x[2]
 
 
@@ -140,7 +131,7 @@ def raised(obj: np.void, p: float, q: float, w: float, n: Vector) -> Vector:
         north = (n[1] * m[1] / math.pi + 0.5 * n[2] * w * sine / cosine) / radius
         ring = out * cosine - north * sine
         x = (ring * ct - east * st, ring * st + east * ct, out * sine + north * cosine)
-    return unit(to_world(obj, x))
+    return unit(out_of(obj, x))
 
 
 @leaf
