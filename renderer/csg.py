@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from renderer.geometry.curve import ROUGH, is_curved, light_over, sight_over, straightened, turned, unsure
 from renderer.geometry.query import find, nearby
-from renderer.geometry.random import jitter, seed_of, strewn
+from renderer.geometry.random import drawn, jitter, seed_of
 from renderer.geometry.rays import follow
 from renderer.geometry.shell import is_round, is_shaded, placed, raised, seen_from
 from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_ray, thin_of
@@ -251,7 +251,7 @@ def csg(
                     lit |= np.uint64(1) << np.uint64(l)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
                 if bounces > 0 and not missed:
-                    lobe, bu, bv = strewn(i, seed, footprint.x, footprint.y)
+                    lobe, bu, bv = drawn(i, 0, seed, footprint.x, footprint.y)
                     out, through = scatter(material, albedo, n_world, e, lobe, bu, bv, False)
                     if max(through[0], through[1], through[2]) > 0.0:
                         within = dot(n_world, out) < 0.0

@@ -22,7 +22,7 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from renderer.body import Base, Body, facing
-from renderer.geometry.random import drawn, jitter, seed_of, strewn
+from renderer.geometry.random import drawn, jitter, seed_of
 from renderer.kernel import borrow, kernel, leaf
 from renderer.scattering import TOUCH, scatter
 from renderer.shading import Vector, ambient, dot, lit_by, sky_from, unit
@@ -645,7 +645,7 @@ def go_on(
 ) -> Bools:  # fmt: skip
     """Which rays are followed on from what they hit; their directions and weights are made those of the next ones.
 
-    number: of a pixel's samples. The first time directions are spread evenly over these.
+    number: of a pixel's samples, over which directions are spread evenly.
     """
     goes = np.zeros(len(directions), np.bool_)
     for k in range(len(directions)):
@@ -655,10 +655,7 @@ def go_on(
         e = unit((-directions[k, 0], -directions[k, 1], -directions[k, 2]))
         material = materials[names[first[hits.body[k]] + hits.slot[k] + 1]]
         px, py = float(x + pixel[k] % width), float(y + pixel[k] // width)
-        if bounce == 0:
-            lobe, u, v = strewn(number[k], seed, px + 0.5, py)
-        else:
-            lobe, u, v = drawn(number[k], bounce, seed, px, py + 0.5)
+        lobe, u, v = drawn(number[k], bounce, seed, px, py + 0.5)
         direction, colour = scatter(material, albedo, n, e, lobe, u, v, within[k])
         if max(colour[0], colour[1], colour[2]) <= 0.0:
             continue

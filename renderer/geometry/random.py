@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from renderer.kernel import leaf
+
+WORD = np.uint64(0xFFFFFFFF)
+RESOLUTION = 1.0 / 4294967296.0
 
 
 @leaf
@@ -33,21 +34,51 @@ def jitter(state: np.uint64) -> tuple[np.uint64, float]:
 
 
 @leaf
-def strewn(i: int, seed: int, x: float, y: float) -> tuple[float, float, float]:
-    """The i-th of points that fill the unit cube evenly, the first n for every n (Roberts 2018, the sequence R3), moved
-    at random for each place (x, y)."""
-    state, a = jitter(seed_of(seed, x, y))
-    state, b = jitter(state)
-    state, c = jitter(state)
-    a, b, c = a + 0.8191725133961645 * i, b + 0.6710436067037893 * i, c + 0.5497004779019703 * i
-    return a - math.floor(a), b - math.floor(b), c - math.floor(c)
+def turned_round(x: np.uint64) -> np.uint64:
+    """32 bits, the last first."""
+    x = (x >> np.uint64(1) & np.uint64(0x55555555)) | (x & np.uint64(0x55555555)) << np.uint64(1)
+    x = (x >> np.uint64(2) & np.uint64(0x33333333)) | (x & np.uint64(0x33333333)) << np.uint64(2)
+    x = (x >> np.uint64(4) & np.uint64(0x0F0F0F0F)) | (x & np.uint64(0x0F0F0F0F)) << np.uint64(4)
+    x = (x >> np.uint64(8) & np.uint64(0x00FF00FF)) | (x & np.uint64(0x00FF00FF)) << np.uint64(8)
+    return x >> np.uint64(16) | (x & np.uint64(0xFFFF)) << np.uint64(16)
+
+
+@leaf
+def scrambled(x: np.uint64, seed: np.uint64) -> np.uint64:
+    """32 bits, each of which is kept or flipped by what `seed` makes of those above it (Owen 1995): by the hash of
+    Laine and Karras 2011, in which bits change higher ones alone, with the constants of Burley 2020."""
+    x = turned_round(x) + (seed & WORD)
+    x ^= x * np.uint64(0x6C50B47C)
+    x ^= x * np.uint64(0xB82F1E52)
+    x ^= x * np.uint64(0xC7AFE638)
+    x ^= x * np.uint64(0x8D22F6E6)
+    return turned_round(x & WORD)
+
+
+@leaf
+def even(i: int, state: np.uint64) -> tuple[float, float, float]:
+    """The i-th of points that fill the unit cube evenly, the first n for every n, best for a power of two.
+
+    They are Sobol's, scrambled and shuffled by `state` (Burley 2020, "Practical hash-based Owen scrambling"). The last
+    two coordinates alone are a (0, 2)-sequence.
+    """
+    k = scrambled(np.uint64(i), state)
+    x, y, z = turned_round(k), np.uint64(0), np.uint64(0)
+    # Direction numbers of the polynomials t + 1 and t^2 + t + 1.
+    along, across, next_across = np.uint64(1 << 31), np.uint64(1 << 31), np.uint64(3 << 30)
+    while k > np.uint64(0):
+        if k & np.uint64(1):
+            y, z = y ^ along, z ^ across
+        k >>= np.uint64(1)
+        along ^= along >> np.uint64(1)
+        across, next_across = next_across, next_across ^ across ^ across >> np.uint64(2)
+    state, a = mix(state), mix(state + np.uint64(1))
+    x, y, z = scrambled(x, a), scrambled(y, state), scrambled(z, state >> np.uint64(32))
+    return z * RESOLUTION, x * RESOLUTION, y * RESOLUTION
 
 
 @leaf
 def drawn(i: int, step: int, seed: int, x: float, y: float) -> tuple[float, float, float]:
-    """A point of the unit cube at random, another one for each step of each path i at each place (x, y)."""
-    state = mix(seed_of(seed, x, y) + np.uint64(i) * np.uint64(0xD1342543DE82EF95) + np.uint64(step))
-    state, a = jitter(state)
-    state, b = jitter(state)
-    state, c = jitter(state)
-    return a, b, c
+    """The i-th path's point of the unit cube for one of its steps: those of a place's paths are `even`, for each step
+    in another order, so that where a path goes in one says nothing of the next."""
+    return even(i, mix(seed_of(seed, x, y) + np.uint64(step)))
