@@ -6,8 +6,8 @@ import numpy as np
 
 from renderer.kernel import leaf
 
-WORD = np.uint64(0xFFFFFFFF)
-RESOLUTION = 1.0 / 4294967296.0
+WORD = np.uint64(0xFFFFFFFF)  # the bits of coordinates,
+RESOLUTION = 1.0 / 4294967296.0  # and what the last of them is worth
 
 
 @leaf
@@ -56,29 +56,24 @@ def scrambled(x: np.uint64, seed: np.uint64) -> np.uint64:
 
 
 @leaf
-def even(i: int, state: np.uint64) -> tuple[float, float, float]:
-    """The i-th of points that fill the unit cube evenly, the first n for every n, best for a power of two.
+def drawn(i: int, step: int, seed: int, x: float, y: float) -> tuple[float, float, float]:
+    """The i-th path's point (lobe, u, v) of the unit cube for one of its steps, at a place (x, y).
 
-    They are Sobol's, scrambled and shuffled by `state` (Burley 2020, "Practical hash-based Owen scrambling"). The last
-    two coordinates alone are a (0, 2)-sequence.
+    A place's paths fill the cube evenly, the first n for every n, best for a power of two, and in each step in another
+    order, so that where a path goes in one says nothing of the next. The points are Sobol's, scrambled and shuffled
+    (Burley 2020, "Practical hash-based Owen scrambling"); the last two coordinates alone are a (0, 2)-sequence.
     """
+    state = mix(seed_of(seed, x, y) + np.uint64(step))
     k = scrambled(np.uint64(i), state)
-    x, y, z = turned_round(k), np.uint64(0), np.uint64(0)
+    u, v, lobe = turned_round(k), np.uint64(0), np.uint64(0)
     # Direction numbers of the polynomials t + 1 and t^2 + t + 1.
     along, across, next_across = np.uint64(1 << 31), np.uint64(1 << 31), np.uint64(3 << 30)
     while k > np.uint64(0):
         if k & np.uint64(1):
-            y, z = y ^ along, z ^ across
+            v, lobe = v ^ along, lobe ^ across
         k >>= np.uint64(1)
         along ^= along >> np.uint64(1)
         across, next_across = next_across, next_across ^ across ^ across >> np.uint64(2)
     state, a = mix(state), mix(state + np.uint64(1))
-    x, y, z = scrambled(x, a), scrambled(y, state), scrambled(z, state >> np.uint64(32))
-    return z * RESOLUTION, x * RESOLUTION, y * RESOLUTION
-
-
-@leaf
-def drawn(i: int, step: int, seed: int, x: float, y: float) -> tuple[float, float, float]:
-    """The i-th path's point of the unit cube for one of its steps: those of a place's paths are `even`, for each step
-    in another order, so that where a path goes in one says nothing of the next."""
-    return even(i, mix(seed_of(seed, x, y) + np.uint64(step)))
+    u, v, lobe = scrambled(u, a), scrambled(v, state), scrambled(lobe, state >> np.uint64(32))
+    return lobe * RESOLUTION, u * RESOLUTION, v * RESOLUTION
