@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.colour import EVEN, colour_over, sharpness, turns
-from renderer.geometry.curve import ROUGH, is_curved, straightened
+from renderer.geometry.curve import is_curved, straightened
 from renderer.geometry.faces import Faces
 from renderer.geometry.local import BLOCKS, FULL, local_of
 from renderer.geometry.polygon import CORNERS, Counts, area, enclose, overlap, subtract
@@ -152,13 +152,14 @@ def in_blocks(footprints: NDArray[np.void], chosen: NDArray[np.int64]) -> NDArra
 
 @kernel
 def area_sampling(
-    tolerance: float, most: int, flat: bool, pattern: Pattern, footprints: NDArray[np.void],
+    tolerance: float, rough: float, most: int, flat: bool, pattern: Pattern, footprints: NDArray[np.void],
     chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera, lighting: Lighting,
     materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, radiance: Floats, method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
-    tolerance: the error to keep within, relative to a white surface in the same light. flat: they share one frame.
+    tolerance: the error to keep within, relative to a white surface in the same light. rough: the error, at least, that
+    straight rays over a curved base may make. flat: they share one frame.
     NOT_MINE where more than `most` strips are near, or where the shares do not sum to one. slots: rows of `materials`
     for the pattern's facets, the object's own first.
     """
@@ -178,7 +179,7 @@ def area_sampling(
         bowed = 0.0
         if is_curved(frame):
             bowed = straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
-            if bowed > max(tolerance, ROUGH):
+            if bowed > max(tolerance, rough):
                 continue
         if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:
             continue

@@ -20,7 +20,7 @@ from renderer.geometry.random import drawn, jitter, seed_of
 from renderer.geometry.rays import follow
 from renderer.geometry.shell import is_round, is_shaded, placed, raised, seen_from
 from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_ray, thin_of
-from renderer.geometry.spans import events
+from renderer.geometry.spans import END, PLANE, events
 from renderer.geometry.view import on_plane, through_screen, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.scattering import scatter
@@ -35,7 +35,7 @@ from renderer.shading import (
     unit,
     white,
 )
-from renderer.tables import CSG, NOT_MINE, POINT, Camera, Lighting, Pattern
+from renderer.tables import BESIDE, CSG, NOT_MINE, POINT, Camera, Lighting, Pattern
 
 SHARED = fixed(32)  # up to so many pieces are found once for all samples of a footprint
 FEW = 2  # with a tolerance, and no more pieces near than this, it begins with
@@ -111,9 +111,9 @@ def csg(
                 fp0, fp1 = min(fp0, p0 + way * (d[0] - p0)), max(fp1, p1 + way * (d[0] - p1))
                 fq0, fq1 = min(fq0, q0 + way * (d[1] - q0)), max(fq1, q1 + way * (d[1] - q1))
         margin = pattern.reach
-        shared = find(pattern, found, fp0 - margin, fq0 - margin, fp1 + margin, fq1 + margin, SHARED)
-        if apart:
-            shared = -1
+        shared = -1
+        if not apart and footprint.open != BESIDE:
+            shared = find(pattern, found, fp0 - margin, fq0 - margin, fp1 + margin, fq1 + margin, SHARED)
 
         share = samples if tolerance > 0.0 else max(int(math.ceil(samples * footprint.size * footprint.size)), 1)
         across = int(math.ceil(math.sqrt(share)))
@@ -161,7 +161,9 @@ def csg(
                     sight = unit(
                         through_screen(camera, footprint.x + u * footprint.size, footprint.y + v * footprint.size)
                     )
-                    passed = seen_from(pattern, found, spans, obj, (eye[0], eye[1], eye[2]), sight)
+                    passed = seen_from(
+                        pattern, found, spans, obj, (eye[0], eye[1], eye[2]), sight, footprint.open == BESIDE
+                    )
                     m, x, y, at, gp, gq = passed.meeting, passed.x, passed.y, passed.w, passed.gp, passed.gq
                 else:
                     p, q = on_plane(view, u, v)
@@ -175,6 +177,8 @@ def csg(
                 n = normal_of(pattern, found, m, x, y, gp, gq)
                 if rounded and not passed.descends:
                     n = (-n[0], -n[1], -n[2])
+                if rounded and m.facet == END and m.found == PLANE:  # of a cylinder
+                    n = (0.0, math.copysign(1.0, y - obj.mapping[3] - 0.5 * obj.mapping[1]), 0.0)
                 slot = 0
                 if m.found >= 0:
                     item = found.piece[m.found]
@@ -194,7 +198,7 @@ def csg(
                 colour = (material.emissive[0], material.emissive[1], material.emissive[2])
                 if bounces == 0:
                     colour = ambient(material, lighting, albedo, n_world, e)
-                if missed:  # through the grooves at the outline, to what is behind
+                if missed:  # by the outline, to what is behind
                     colour = (0.0, 0.0, 0.0)
                     if len(leaving) == 0:
                         colour = sky_from(lighting, sight)
@@ -202,7 +206,7 @@ def csg(
                         ray = leaving[gone[0]]
                         gone[0] += 1
                         for axis in range(3):
-                            ray.origin[axis], ray.way[axis], ray.through[axis] = at_world[axis], sight[axis], 1.0
+                            ray.origin[axis], ray.way[axis], ray.through[axis] = eye[axis], sight[axis], 1.0
                         ray.footprint, ray.number, ray.bounces, ray.object = index, i, bounces + 1, frame.object
                         ray.within, ray.clear = 0, 0.0
                 if not indirect:

@@ -12,13 +12,14 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.shapes import touching
-from renderer.tables import FOOTPRINT, FRAME, HIT, MESH, RECTANGLE, Camera, Floats, Ints
+from renderer.geometry.shapes import Shells, touching
+from renderer.tables import BESIDE, CYLINDER, FOOTPRINT, FRAME, HIT, MESH, RECTANGLE, THROUGH, Camera, Floats, Ints
 
 LEVELS = 4  # splits of a pixel on an edge: 256 footprints at most
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
 TURN = 0.25  # ... nor by more than 1 - cosine = TURN * tolerance (measured): a tangent plane errs as that does
 TURNS = 2  # splits for that alone: a mesh may turn in every triangle, however small
+WITHIN = 1.0 - 1e-6  # of a cylinder's height: a place at its rim counts as one of its side
 OPEN = 1.5  # times the depth of the grooves: a footprint's corners may be seen at less slope than its centre
 
 
@@ -36,6 +37,13 @@ class Shapes(Protocol):
 
     def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> NDArray[np.void]:
         """The tangent FRAME (n,) at each of the hits."""
+
+    @property
+    def shells(self) -> Shells | None:
+        """What the grooves of spheres and cylinders fill."""
+
+    def shell_hits(self, origin: Floats, directions: Floats) -> NDArray[np.void]:
+        """The nearest HIT (n,) of each ray with the outsides of shells."""
 
     def blocked(
         self, origin: Floats, directions: Floats, hits: NDArray[np.void], lights: NDArray[np.void]
@@ -110,8 +118,22 @@ def footprints(
             smooth = touching(middle, mask, corners, corner_mask, around, max(SMOOTH_COSINE, 1.0 - turn))
         else:
             smooth = np.ones(len(middle), np.bool_)
+        eyes, beside = np.broadcast_to(camera.origin, middle_rays.shape), np.zeros(len(middle), np.bool_)
+        if level == 0 and shapes.shells is not None:
+            outer = shapes.shell_hits(camera.origin, corner_rays)[around]
+            outer = np.concatenate([outer, shapes.shell_hits(camera.origin, middle_rays)[None]])
+            row = at_outline(shapes.objects, shapes.shells, np.concatenate([corners[around], middle[None]]), outer)
+            eyes = eyes.copy()
+            for k in np.unique(row[row >= 0]):
+                which = np.flatnonzero(row == k)
+                eyes[which], middle_rays[which] = beside_outline(shapes.objects[k], camera.origin, middle_rays[which])
+            which = np.flatnonzero(row >= 0)
+            middle[which] = shapes.hits(eyes[which], middle_rays[which])
+            beside[which] = (middle["object"][which] == row[which]) & (middle["face"][which] == 0)
+            mask[which] = shapes.blocked(eyes[which], middle_rays[which], middle[which], lights)
+        smooth |= beside
         keep = np.flatnonzero(smooth & (middle["object"] >= 0))
-        done.append(_framed(shapes, camera, flat, pixel, x, y, size, middle_rays, middle, mask, keep))
+        done.append(_framed(shapes, eyes, flat, pixel, x, y, size, middle_rays, middle, mask, beside, keep))
         split = ~smooth
         if not split.any():
             break
@@ -160,14 +182,55 @@ def mark_torn(
 
 def mark_open(shapes: Shapes, heights: Floats, seen: Footprints) -> None:
     """Find the footprints where sight, gone on from the bare shape, comes out again above the grooves' depth: at a
-    slope s to a surface that falls by b along it, it gets s^2 / (2 b) deep."""
+    slope s to a surface that falls by b along it, it gets s^2 / (2 b) deep. Or it comes to the end of a cylinder."""
     frames = seen.frames
     own = frames["object"]
     slope, (x, y), (a, b, c) = frames["eye"][:, 2], (frames["eye"][:, :2] - frames["pq"]).T, frames["form"].T
     falls = 2.0 * (a * x * x + 2.0 * b * x * y + c * y * y)
     carries = (frames["grooved"] != 0) & (frames["within"] == 0) & (shapes.objects["shape"][own] != MESH)
     deep = OPEN * heights[own, 1]
-    seen.footprints["open"] = (carries & (slope * slope < falls * deep))[seen.footprints["frame"]]
+    mapping, q = shapes.objects["mapping"][own], frames["pq"][:, 1]
+    past = np.abs((q - deep * y / np.maximum(slope, 1e-12) - mapping[:, 3]) / mapping[:, 1] - 0.5) > 0.5
+    past &= (shapes.objects["shape"][own] == CYLINDER) & (deep > 0.0)
+    through = (carries & (past | (slope * slope < falls * deep)))[seen.footprints["frame"]]
+    seen.footprints["open"] = np.where(seen.footprints["open"] == BESIDE, BESIDE, np.where(through, THROUGH, 0))
+
+
+def at_outline(objects: NDArray[np.void], shells: Shells, seen: NDArray[np.void], outer: NDArray[np.void]) -> Ints:
+    """On whose outline each of n squares lies, where ridges may stand over it, or whose rim, where grooves may run out:
+    the row of OBJECT; -1: on none.
+
+    seen, outer: (5, n) HITs at its corners and middle, with the bare shapes and with the outsides of shells. All else
+    that is seen there stands behind.
+    """
+    far = np.where(outer["object"] >= 0, outer["t"], np.inf)
+    row = np.take_along_axis(outer["object"], far.argmin(axis=0)[None], axis=0)[0]
+    own = seen["object"] == row
+    behind = ~own & (seen["t"] > far.min(axis=0))
+    cap = own & (objects["shape"][row] == CYLINDER) & (seen["face"] == 1)
+    over_end = own & ~cap & (outer["face"] == 1) & (objects["shape"][row] == CYLINDER)
+    rim = (over_end | cap & (np.hypot(seen["u"], seen["v"]) > shells.inner[row])).any(axis=0)
+    ridges = (behind & (shells.outer["size"][row, 0] > objects["size"][row, 0])).any(axis=0)
+    clear = (cap & (objects["clear"][row] != 0)).any(axis=0)
+    return np.where((own | behind).all(axis=0) & (ridges | rim) & ~clear, row, -1).astype(np.int32)
+
+
+def beside_outline(obj: np.void, origin: Floats, directions: Floats) -> tuple[Floats, Floats]:
+    """Rays, (n, 3) each, that meet a sphere, or a cylinder's side, upright where other rays (n, 3) pass it."""
+    flat = np.diag([1.0, 1.0, 0.0 if obj["shape"] == CYLINDER else 1.0])
+    eye, way = (origin - obj["translation"]) @ obj["rotation"], directions @ obj["rotation"]
+    across = way @ flat
+    t = -(across @ eye) / np.maximum((across * across).sum(axis=1), 1e-300)
+    place = eye + t[:, None] * way
+    if obj["shape"] == CYLINDER:
+        half = 0.5 * obj["size"][1] * WITHIN
+        place[:, 2] = np.clip(place[:, 2], -half, half)
+    out = place @ flat
+    long = np.linalg.norm(out, axis=1)[:, None]
+    out = np.where(long > 0.0, out / np.maximum(long, 1e-300), [1.0, 0.0, 0.0])
+    start = place @ (np.eye(3) - flat) + 2.0 * obj["size"][0] * out
+    turn = obj["rotation"].T
+    return obj["translation"] + start @ turn, -out @ turn
 
 
 def _inside(x: Floats, y: Floats, seed: int) -> Floats:
@@ -180,13 +243,14 @@ def _inside(x: Floats, y: Floats, seed: int) -> Floats:
 
 
 def _framed(
-    shapes: Shapes, camera: Camera, flat: dict[int, NDArray[np.void]], pixel: Ints, x: Floats, y: Floats, size: float,
-    directions: Floats, hits: NDArray[np.void], mask: NDArray[np.uint64], keep: NDArray[np.int64],
+    shapes: Shapes, eyes: Floats, flat: dict[int, NDArray[np.void]], pixel: Ints, x: Floats, y: Floats, size: float,
+    directions: Floats, hits: NDArray[np.void], mask: NDArray[np.uint64], beside: NDArray[np.bool_],
+    keep: NDArray[np.int64],
 ) -> Footprints:  # fmt: skip
     """The footprints among the squares (n,) that `keep` lists, with frames; those of a rectangle share one."""
     out = np.zeros(len(keep), FOOTPRINT)
     out["pixel"], out["x"], out["y"], out["blocked"] = pixel[keep], x[keep], y[keep], mask[keep]
-    out["size"] = size
+    out["size"], out["open"] = size, np.where(beside[keep], BESIDE, 0)
     shared: list[NDArray[np.void]] = []
     rest = np.ones(len(keep), np.bool_)
     seen = hits["object"][keep]
@@ -199,7 +263,7 @@ def _framed(
     curved = keep[rest]
     out["frame"][rest] = len(shared) + np.arange(len(curved))
     if len(curved):
-        shared.append(shapes.frames(camera.origin, directions[curved], hits[curved]))
+        shared.append(shapes.frames(eyes[curved], directions[curved], hits[curved]))
     return Footprints(out, np.concatenate(shared) if shared else np.zeros(0, FRAME))
 
 

@@ -227,15 +227,16 @@ def complete_section(curved: bool, pattern: Pattern, slots: NDArray[np.int32], n
 
 @kernel
 def line(
-    mode: int, bounces: int, pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64],
-    frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void],
-    slots: NDArray[np.int32], albedo: Floats, radiance: Floats, method: NDArray[np.uint8],
+    mode: int, tolerance: float, bounces: int, pattern: Pattern, footprints: NDArray[np.void],
+    chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera, lighting: Lighting,
+    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, radiance: Floats, method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance (n, 3) and the method each took.
 
-    What has too many grooves in it is not its own, whatever the mode: STRICT, LOOSE or PAPER. bounces: how often light
-    is followed; this does so from mirror to mirror and from matt to matt where nothing stands above the plane. slots:
-    rows of `materials` for the pattern's facets, the object's own first.
+    What has too many grooves in it is not its own, whatever the mode: STRICT, LOOSE or PAPER. tolerance: the error, at
+    most, that STRICT leaves on a curved base, relative to a white surface. bounces: how often light is followed; this
+    does so from mirror to mirror and from matt to matt where nothing stands above the plane. slots: rows of `materials`
+    for the pattern's facets, the object's own first.
     """
     owned = work_for(pattern, len(lighting.lights))
     work, pattern, frames, lighting = borrow(owned), borrow(pattern), borrow(frames), borrow(lighting)
@@ -305,6 +306,11 @@ def line(
         if samples and grooves > 0:
             continue
         if grooves < 0 or (ridged and not folded and grooves * (most + 1 + chords) + 2 + chords > POINTS):
+            continue
+        error = 0.0
+        if curved and grooves > 0:
+            error = unsure(frame, max(r.wide_high - r.high, r.low - r.wide_low, pattern.width))
+        if strict and error > tolerance:
             continue
         method[index] = BASE
 
@@ -518,8 +524,6 @@ def line(
                     if work.light[l, 3] != 0.0:
                         colour = lit_by(lights[l], material, n_world, e, at)
                         red, green, blue = red + part * colour[0], green + part * colour[1], blue + part * colour[2]
-        if curved and grooves > 0:
-            far = max(r.wide_high - r.high, r.low - r.wide_low, pattern.width)
-            radiance[index, 3] = unsure(frame, far)
+        radiance[index, 3] = error
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red, green, blue
     keep(owned)

@@ -27,12 +27,13 @@ from renderer.compile import CompiledScene, PatternCache, compile_scene, table_b
 from renderer.csg import csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
+from renderer.geometry.curve import ROUGH, ROUND
 from renderer.geometry.strips import STRIPS
 from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
-from renderer.tables import BARE, BASE, CSG, NOT_MINE, RAY, Floats, Lighting, Pattern
+from renderer.tables import BARE, BASE, CSG, MESH, NOT_MINE, RAY, Floats, Lighting, Pattern
 from renderer.trace import Truth
 
 TILE = 64  # pixels
@@ -186,7 +187,15 @@ class Frame:
             return
         if not self.rays_go_on:
             start = time.perf_counter()
-            line(MODES.get(settings.method, LOOSE), settings.bounces, pattern, seen.footprints, chosen, *self._of(part))
+            line(
+                MODES.get(settings.method, LOOSE),
+                settings.tolerance,
+                settings.bounces,
+                pattern,
+                seen.footprints,
+                chosen,
+                *self._of(part),
+            )
             part.took("line", start)
             chosen = chosen[method[chosen] == NOT_MINE]
         if len(chosen):
@@ -232,6 +241,7 @@ class Frame:
         """Shade footprints by the lights alone, and by all of the sky."""
         settings, pattern, footprints, method = self.settings, part.pattern, part.seen.footprints, part.method
         rest = self._of(part)
+        rough = ROUGH if self.scene.objects["shape"][part.row] == MESH else ROUND
         if settings.method == "csg" and pattern is not BARE:
             self._sample(part, chosen, 0.0)
             return
@@ -243,7 +253,7 @@ class Frame:
         if settings.method in ("lines", "area") and pattern is not BARE:
             left = chosen
         else:
-            line(MODES.get(settings.method, LOOSE), 0, pattern, footprints, chosen, *rest)
+            line(MODES.get(settings.method, LOOSE), settings.tolerance, 0, pattern, footprints, chosen, *rest)
             part.took("line", start)
             left = chosen[method[chosen] == NOT_MINE]
         if len(left) and settings.method in ("lines", "area", "auto"):
@@ -255,14 +265,16 @@ class Frame:
                     settings.samples, settings.seed, settings.tolerance, most, flat, pattern, footprints, ordered, *rest
                 )
             else:
-                area_sampling(settings.tolerance, most, flat, pattern, footprints, ordered, *rest)
+                area_sampling(settings.tolerance, rough, most, flat, pattern, footprints, ordered, *rest)
             part.took("lines" if settings.method == "lines" else "area", start)
             left = left[method[left] == NOT_MINE]
         if len(left) and settings.method == "auto":
             self._sample(part, left, settings.tolerance, sparing=True)
             left = in_blocks(footprints, left[method[left] == NOT_MINE])
             start = time.perf_counter()  # with as many strips as there is room for, where samples do not do
-            area_sampling(settings.tolerance, STRIPS, int(part.row) in self.flat, pattern, footprints, left, *rest)
+            area_sampling(
+                settings.tolerance, rough, STRIPS, int(part.row) in self.flat, pattern, footprints, left, *rest
+            )
             part.took("area", start)
             left = left[method[left] == NOT_MINE]
         if len(left):
@@ -381,12 +393,12 @@ def _albedo() -> Floats:
 
 
 def _frame(compiled: CompiledScene, settings: Settings, model: Truth | Textures | None = None) -> Frame:
-    caster = Caster(compiled.objects, compiled.triangles, bent=settings.bounces > 0)
     width, height = compiled.resolution
     heights = np.zeros((len(compiled.objects), 2))
     for row, index in enumerate(compiled.objects["pattern"]):
         if index >= 0 and settings.method in ("auto", "lines", "area", "csg"):
             heights[row] = compiled.patterns[index].height, compiled.patterns[index].depth
+    caster = Caster(compiled.objects, compiled.triangles, bent=settings.bounces > 0, heights=heights)
     lit = settings.bounces > 0 or bool(compiled.lighting.sky.any()) or len(compiled.lighting.surroundings.tables) > 0
     return Frame(
         scene=compiled,

@@ -11,7 +11,7 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
-from renderer.geometry.shapes import NO_TRIANGLES, Triangles, block, cast, cast_triangles, frames_at
+from renderer.geometry.shapes import NO_TRIANGLES, Triangles, block, cast, cast_triangles, frames_at, shells
 from renderer.tables import FRAME, HIT, POINT, Floats, Ints
 
 Bools = NDArray[np.bool_]
@@ -29,10 +29,15 @@ def ways(light: np.void, points: Floats) -> tuple[Floats, Floats]:
 class Caster:
     """The shapes of a scene, ready for rays."""
 
-    def __init__(self, objects: NDArray[np.void], triangles: Triangles = NO_TRIANGLES, bent: bool = False) -> None:
-        """bent: the frames of bare surfaces know how they are curved, too, as what they mirror asks for."""
+    def __init__(
+        self, objects: NDArray[np.void], triangles: Triangles = NO_TRIANGLES, bent: bool = False,
+        heights: Floats | None = None,
+    ) -> None:  # fmt: skip
+        """bent: the frames of bare surfaces know how they are curved, too, as what they mirror asks for. heights:
+        (n, 2) of each row of OBJECT, how high and how deep its grooves are, pattern units; nought, where it is None."""
         self.bent = bent
         self.objects = objects
+        self.shells = None if heights is None else shells(objects, heights)
         self.triangles = triangles
         self._embree: EmbreeScene | None = None
         self._size = 1.0
@@ -53,6 +58,14 @@ class Caster:
     def shadows(self) -> bool:
         """Whether one part of the scene may stand in the light of another: not on a single convex shape."""
         return len(self.objects) > 1 or self._embree is not None
+
+    def shell_hits(self, origin: Floats, directions: Floats) -> NDArray[np.void]:
+        """The nearest HIT (n,) of rays from `origin` (3,) with the outsides of shells."""
+        assert self.shells is not None
+        hits = np.zeros(len(directions), HIT)
+        origins = np.ascontiguousarray(np.broadcast_to(origin, directions.shape))
+        cast(self.shells.outer, origins, directions, np.full(len(hits), -1, np.int32), hits)
+        return hits
 
     def hits(self, origin: Floats, directions: Floats, own: Ints | None = None) -> NDArray[np.void]:
         """The nearest HIT (n,) of each ray from `origin` (3,) or (n, 3) along `directions` (n, 3).

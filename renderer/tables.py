@@ -54,6 +54,7 @@ PIECE = np.dtype(
         ("start_end", "u1"), ("finish_end", "u1"),  # SMOOTH, CORNER, FLAT or PROFILE
         ("closed", "u1"),  # 1: a whole circle, no ends at all
         ("ended", "u1"),  # 1: one of the ends is PROFILE, whose cap goes on past it
+        ("start_step", "u1"), ("finish_step", "u1"),  # 1: the next piece's height may differ along the mitre
     ]
 )  # fmt: skip
 """A line or arc of a placed path. (s, b) are its local coordinates: s arc length from the start point, b the signed
@@ -245,17 +246,22 @@ FRAME = np.dtype(
 )
 """The tangent plane at a surface point: X = origin + axes (x - (pq, 0)). A flat object has one for all its pixels."""
 
+# How sight passes by at an outline (FOOTPRINT.open).
+THROUGH = 1  # it may, through the grooves
+BESIDE = 2  # it may meet ridges beside the bare shape: only a part of the footprint is on it
+
 FOOTPRINT = np.dtype(
     [
         ("pixel", "i4"),  # row-major in the tile
         ("frame", "i4"),  # row of FRAME
         ("blocked", "u8"),  # bit l: another object stands between the surface and light l,
         ("torn", "u8"),  # ... or between that and the highest or the lowest points of the grooves, but not both
-        ("open", "u1"),  # 1: sight may pass through the grooves at a sphere's or a cylinder's outline
+        ("open", "u1"),  # THROUGH or BESIDE, at the outline of a sphere or a cylinder
         ("x", "f8"), ("y", "f8"), ("size", "f8"),  # its square on the screen: left, top, edge; in pixels
     ]
 )  # fmt: skip
-"""A square of the screen all of which sees one smooth surface: a pixel, or a part of one on a silhouette."""
+"""A square of the screen all of which sees one smooth surface: a pixel, or a part of one on a silhouette. Or a pixel at
+the outline of a shape with ridges, which stand over it."""
 
 
 class Camera(NamedTuple):

@@ -37,7 +37,9 @@ from renderer.tables import (
     SCALE_TABLE,
     SMOOTH,
     Chain,
+    Floats,
     Grid,
+    Ints,
     Pattern,
 )
 from schema import internal as internal
@@ -48,6 +50,8 @@ WIDTH_TOLERANCE = 1 / 20
 """... and as a part of the groove's width, which decides only for grooves that are narrow for their path."""
 MOST_NEAR = 1 << 18  # pieces that one ray looks at in one place
 BYTES_KEPT = 256 << 20  # compiled patterns and paths in a cache
+
+Flags = NDArray[np.bool_]
 
 Project = Callable[[Sequence[tuple[float, ...]]], Sequence[tuple[float, float]]]
 """Takes points of world space to an object's pattern plane."""
@@ -236,6 +240,27 @@ def _pieces(chain: Chain) -> NDArray[np.void]:
     return pieces
 
 
+def _steps(pieces: NDArray[np.void], half: Floats, changing: NDArray[np.bool_]) -> tuple[Flags, Flags]:
+    """Whether the heights of a piece and the next may differ along their mitre, at its start and at its finish.
+
+    They do where one is bent or changes its scale, or is so short that its mitres meet within the band.
+    """
+    begins = pieces["t0"] == 0.0
+    first = np.flatnonzero(begins)
+    last = np.append(first[1:], len(pieces)) - 1
+    chain = np.cumsum(begins) - 1
+    row = np.arange(len(pieces))
+    short = np.abs(pieces["start_mitre"] + pieces["finish_mitre"]) * half > pieces["length"]
+    unlike = changing[pieces["groove"]] | (pieces["curvature"] != 0.0) | short
+
+    def stepped(end: NDArray[np.uint8], other: Ints) -> Flags:
+        return np.asarray((end == CORNER) & (unlike | unlike[other]))
+
+    before = np.where(begins, last[chain], row - 1)
+    after = np.where(row == last[chain], first[chain], row + 1)
+    return stepped(pieces["start_end"], before), stepped(pieces["finish_end"], after)
+
+
 def dress(pattern: schema.Pattern, traced: Paths) -> Compiled:
     """The pattern's tables: traced paths with their grooves' cross-sections."""
     pieces = traced.pieces.copy()
@@ -271,6 +296,7 @@ def dress(pattern: schema.Pattern, traced: Paths) -> Compiled:
     ended = (pieces["start_end"] == PROFILE) | (pieces["finish_end"] == PROFILE)
     pieces["half"] = np.nextafter(half.astype(np.float32), np.float32(np.inf))
     pieces["ended"] = ended
+    pieces["start_step"], pieces["finish_step"] = _steps(pieces, half, grooves["scale_kind"] != SCALE_CONSTANT)
     far = half * np.maximum(np.sqrt(1.0 + mitre**2), np.where(ended, math.sqrt(2.0), 1.0))
     lines = bool(np.all(pieces["curvature"] == 0.0))
     sine = pieces["tx"] * pieces["ty"][0] - pieces["ty"] * pieces["tx"][0] if len(pieces) else np.zeros(0)

@@ -23,6 +23,7 @@ from renderer.tables import Floats, Pattern
 BOWED = 0.03  # the error that is left, in parts of the angle by which the base turns within reach (measured)
 
 BOWED_STRAIGHT = 0.2  # ... where rays are straight, in parts of what their slopes are changed by to make up for it
+ROUND = 0.02  # ... that is left to rays which are followed as they are, on spheres and cylinders
 ROUGH = 0.06  # ... that is left to rays which bend: next to the terminator straight light is wrong all over
 
 
@@ -202,9 +203,14 @@ def straightened(
 ) -> float:
     """About the error of straight rays, relative to white.
 
-    It goes with the part by which `eye_over` and `light_over` change a slope of sight or light at (p, q), the most.
+    It goes with the part by which `eye_over` and `light_over` change a slope of sight or light at (p, q), the most. Of
+    grooves that rise and sink the changes for the two make up for one another, the errors do not.
     """
     most = abs(eye_over(pattern.height, pattern.depth, pattern.width, frame) / frame.eye[2] - 1.0)
+    tall = pattern.height + pattern.depth
+    most = max(
+        most, abs(eye_over(tall, 0.0, pattern.width, frame) / frame.eye[2] - 1.0) if pattern.height > 0.0 else 0.0
+    )
     for l in range(len(lights)):
         if (blocked >> np.uint64(l)) & np.uint64(1):
             continue

@@ -195,6 +195,28 @@ def cast_triangles(
             hit.normal[k] = n[k] / area if length == 0.0 or away else hit.normal[k] / length
 
 
+class Shells(NamedTuple):
+    """What the grooves of spheres and cylinders fill."""
+
+    outer: NDArray[np.void]  # (n,) OBJECT, as large as their highest ridges; what has no shell meets no rays
+    inner: Floats  # (n,) the radius of a cylinder at its grooves' deepest, world units; else inf
+
+
+def shells(objects: NDArray[np.void], heights: Floats) -> Shells | None:
+    """The shells of spheres with ridges, and of cylinders with any grooves; None if there are no such."""
+    high, deep = heights.T
+    round_ = (objects["shape"] == SPHERE) & (high > 0.0) | (objects["shape"] == CYLINDER) & (high + deep > 0.0)
+    if not round_.any():
+        return None
+    outer: NDArray[np.void] = objects.copy()
+    outer["shape"][~round_] = MESH
+    (su, sv), (radius, height) = objects["mapping"][:, :2].T, objects["size"].T
+    up = np.where(objects["shape"] == SPHERE, math.pi * radius, height)
+    sigma = np.where(round_, np.sqrt(2.0 * math.pi * radius * np.abs(up / (su * sv))), 0.0)  # at a sphere's equator
+    outer["size"][:, 0] += high * sigma
+    return Shells(outer, np.where(outer["shape"] == CYLINDER, radius - deep * sigma, np.inf))
+
+
 @kernel
 def block(
     objects: NDArray[np.void], origins: Floats, directions: Floats, far: Floats, own: Ints, blocked: NDArray[np.bool_]

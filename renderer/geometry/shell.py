@@ -29,7 +29,7 @@ from renderer.geometry.solid import (
     polish,
     thin_of,
 )
-from renderer.geometry.spans import BODY, PLANE, Events
+from renderer.geometry.spans import BODY, END, PLANE, Events
 from renderer.kernel import callee, leaf
 from renderer.shading import unit
 from renderer.tables import CYLINDER, POINT, SPHERE, Pattern
@@ -223,6 +223,8 @@ def pass_through(
         return Passage(meeting, here[0], here[1], 0.0, 0.0, 0.0, not rises, rises != within)
     final, leaves = left_at(pattern, obj, o, d, m, begin, within)
     final = min(final, end)
+    if final <= begin:
+        return Passage(OPEN, here[0], here[1], here[2], 0.0, 0.0, True, leaves)
     nearest = min(max(-m[1] / m[0], begin), final) if m[0] > 0.0 else begin  # where it is deepest, and most level
     speed = math.sqrt(max(sideways(m, begin), sideways(m, nearest), sideways(m, final), 0.0))
     sinks = math.nan  # chords of a ray that turns within the shell lie above it: they end where it dips into the body
@@ -267,13 +269,37 @@ def pass_through(
 
 @leaf
 def seen_from(
-    pattern: Pattern, found: Nearby, spans: Events, obj: np.void, eye: Vector, way: Vector
+    pattern: Pattern, found: Nearby, spans: Events, obj: np.void, eye: Vector, way: Vector, beside: bool
 ) -> Passage:  # fmt: skip
-    """What the ray from the eye along `way` (world) sees. Where it passes through grooves at the outline, OPEN, and the
-    place is that of the bare shape; a ray beside that is moved to its outline, as its footprint is there."""
+    """What the ray from the eye along `way` (world) sees. Where it passes by at the outline, through grooves or over
+    ridges, OPEN.
+
+    A ray beside the bare shape may meet a ridge, and one through a cylinder's end what grooves have left of that, if
+    the footprint is `beside` the shape. Else such a ray is moved to the outline, as its footprint is there.
+    """
     o, d = from_world(obj, eye), local(obj, way[0], way[1], way[2])
     m = moments(obj, o, d)
     bare = crossings(obj, m, 0.0)[0]
+    if beside:
+        high, low = pattern.height + thin_of(pattern), -pattern.depth - thin_of(pattern)
+        begin, final = crossings(obj, m, high)
+        if m[0] == 0.0 and m[2] <= (obj.size[0] + high * sigma_at(obj, 1.0)) ** 2:  # along a cylinder
+            begin, final = 0.0, math.inf
+        ended = False
+        if obj.shape == CYLINDER:
+            top = math.copysign(0.5 * obj.size[1], d[2])
+            first, last = ((-top - o[2]) / d[2], (top - o[2]) / d[2]) if d[2] != 0.0 else (-math.inf, math.inf)
+            ended = first > max(begin, 0.0)
+            begin, final = max(begin, first), min(final, last)
+        begin = max(begin, 0.0)
+        if not begin < final or (d[2] == 0.0 and obj.shape == CYLINDER and abs(o[2]) > 0.5 * obj.size[1]):
+            return Passage(OPEN, 0.0, 0.0, 0.0, 0.0, 0.0, True, True)
+        here = chart(obj, ahead(o, d, begin))
+        if ended:
+            ground = meet(pattern, found, spans, -1, here[0], here[1], 0.0, 0.0, high, low, DOWN).w
+            if here[2] < ground:
+                return Passage(Meeting(here[2], END, PLANE, BODY), here[0], here[1], here[2], 0.0, 0.0, True, False)
+        return pass_through(pattern, found, spans, obj, o, d, here, begin, math.inf, False, False)
     if math.isnan(bare):
         bare = -m[1] / m[0]
         x = ahead(o, d, bare)

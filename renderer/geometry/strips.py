@@ -141,8 +141,6 @@ def divide(
     capped = right > 0.0 and piece.closed == 0
     ratio = profile.right / -profile.left if profile.left < 0.0 else 0.0
     left = -profile.left / profile.right if profile.left < 0.0 and capped else 0.0
-    # Cross-sections of two pieces differ along their mitre where they are bent or their scale changes.
-    changing = groove.scale_kind != SCALE_CONSTANT
     wide = 1.01 * piece.half / max(profile.right, -profile.left, 1e-300)
     n = 0
     if piece.curvature == 0.0:
@@ -175,7 +173,7 @@ def divide(
                 a = b = 0.0
                 if piece.start_end == CORNER:
                     a = piece.start_mitre
-                    if changing:
+                    if piece.start_step:
                         end_at(chunk, 0, x, y, tx + a * ty, ty - a * tx, wide)
                 elif piece.start_end == PROFILE and capped:
                     a = -1.0 if side == 0 else ratio
@@ -183,7 +181,7 @@ def divide(
                     end_at(chunk, 0, x, y, tx, ty, f0 - g * s)
                 if piece.finish_end == CORNER:
                     b = -piece.finish_mitre
-                    if changing:
+                    if piece.finish_step:
                         along = piece.length
                         end_at(chunk, 1, x + along * tx, y + along * ty, tx + b * ty, ty - b * tx, wide)
                 elif piece.finish_end == PROFILE and capped:
@@ -274,7 +272,7 @@ def divide(
                             bound(chunk, vx, vy, -vx * ex - vy * ey)
                             ends = piece.start_end if end == 0 else piece.finish_end
                             near = min(abs(s0 - e), abs(s1 - e)) < 0.5 * step
-                            if ends == CORNER:
+                            if piece.start_step if end == 0 else piece.finish_step:
                                 end_at(chunk, end, ex, ey, vx if end == 0 else -vx, vy if end == 0 else -vy, wide)
                             elif near and (ends == FLAT or (ends == PROFILE and not capped)):
                                 end_at(chunk, end, ex, ey, ux, uy, f0 if end == 0 else f1)
