@@ -158,7 +158,7 @@ def area_sampling(
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
-    tolerance: the error to keep within, relative to a white surface in the same light. rough: the error, at least, that
+    tolerance: the error to keep within, relative to a white surface in the same light. rough: the error, at most, that
     straight rays over a curved base may make. flat: they share one frame.
     NOT_MINE where more than `most` strips are near, or where the shares do not sum to one. slots: rows of `materials`
     for the pattern's facets, the object's own first.
@@ -179,7 +179,7 @@ def area_sampling(
         bowed = 0.0
         if is_curved(frame):
             bowed = straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
-            if bowed > max(tolerance, rough):
+            if bowed > rough:
                 continue
         if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:
             continue

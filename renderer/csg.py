@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.curve import ROUGH, is_curved, light_over, sight_over, straightened, turned, unsure
+from renderer.geometry.curve import ROUGH, ROUND, is_curved, light_over, sight_over, straightened, turned, unsure
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import drawn, jitter, seed_of
 from renderer.geometry.rays import follow
@@ -43,6 +43,7 @@ PROBE = 4  # the corners and PROBE * PROBE samples,
 FIRST = 8  # else or then takes FIRST * FIRST,
 MOST = 64  # and at most MOST * MOST; a part of a pixel fewer
 GRAINY = 0.01  # the tolerance, at least, where a curved base makes rays bend much: many footprints at low light
+EASED = 0.25  # ... or this part of what straight rays would err by, where rays are followed as they are
 SURE = 0.5  # how much of the tolerance the standard error may take
 
 
@@ -131,12 +132,12 @@ def csg(
             if 0 <= shared <= FEW and bounces == 0:
                 across, down, corners = PROBE, PROBE, 4
             target = tolerance
-            if (
-                curved
-                and not rounded
-                and straightened(pattern, frame, view.p, view.q, footprint.blocked, lights) > ROUGH
-            ):
-                target = max(tolerance, GRAINY)
+            if curved:
+                bowed = straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
+                if bowed > ROUGH and not rounded:
+                    target = max(tolerance, GRAINY)
+                elif ROUND < bowed <= ROUGH and rounded and pattern.height > 0.0:
+                    target = max(tolerance, EASED * bowed)
             target *= SURE / ease * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0

@@ -227,13 +227,13 @@ def complete_section(curved: bool, pattern: Pattern, slots: NDArray[np.int32], n
 
 @kernel
 def line(
-    mode: int, tolerance: float, bounces: int, pattern: Pattern, footprints: NDArray[np.void],
+    mode: int, rough: float, bounces: int, pattern: Pattern, footprints: NDArray[np.void],
     chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera, lighting: Lighting,
     materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, radiance: Floats, method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance (n, 3) and the method each took.
 
-    What has too many grooves in it is not its own, whatever the mode: STRICT, LOOSE or PAPER. tolerance: the error, at
+    What has too many grooves in it is not its own, whatever the mode: STRICT, LOOSE or PAPER. rough: the error, at
     most, that STRICT leaves on a curved base, relative to a white surface. bounces: how often light is followed; this
     does so from mirror to mirror and from matt to matt where nothing stands above the plane. slots: rows of `materials`
     for the pattern's facets, the object's own first.
@@ -310,7 +310,7 @@ def line(
         error = 0.0
         if curved and grooves > 0:
             error = unsure(frame, max(r.wide_high - r.high, r.low - r.wide_low, pattern.width))
-        if strict and error > tolerance:
+        if strict and error > rough:
             continue
         method[index] = BASE
 

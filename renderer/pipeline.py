@@ -152,6 +152,11 @@ class Frame:
         """Whether rays that have left a surface may meet one."""
         return self.caster.shadows or bool(self.scene.objects["clear"].any())
 
+    def _rough(self, row: int) -> float:
+        """The error that analytic methods may leave on an object's curved base: beyond it rays are worth their time."""
+        followed = self.scene.objects["shape"][row] != MESH and self.heights[row, 0] > 0.0
+        return max(self.settings.tolerance, ROUND if followed else ROUGH)
+
     def _strata(self) -> tuple[int, int]:
         """Of a footprint's samples, across and down."""
         across = math.ceil(math.sqrt(self.settings.samples))
@@ -241,7 +246,7 @@ class Frame:
         """Shade footprints by the lights alone, and by all of the sky."""
         settings, pattern, footprints, method = self.settings, part.pattern, part.seen.footprints, part.method
         rest = self._of(part)
-        rough = ROUGH if self.scene.objects["shape"][part.row] == MESH else ROUND
+        rough = self._rough(part.row)
         if settings.method == "csg" and pattern is not BARE:
             self._sample(part, chosen, 0.0)
             return
@@ -253,7 +258,7 @@ class Frame:
         if settings.method in ("lines", "area") and pattern is not BARE:
             left = chosen
         else:
-            line(MODES.get(settings.method, LOOSE), settings.tolerance, 0, pattern, footprints, chosen, *rest)
+            line(MODES.get(settings.method, LOOSE), rough, 0, pattern, footprints, chosen, *rest)
             part.took("line", start)
             left = chosen[method[chosen] == NOT_MINE]
         if len(left) and settings.method in ("lines", "area", "auto"):

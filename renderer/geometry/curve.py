@@ -23,7 +23,7 @@ from renderer.tables import Floats, Pattern
 BOWED = 0.03  # the error that is left, in parts of the angle by which the base turns within reach (measured)
 
 BOWED_STRAIGHT = 0.2  # ... where rays are straight, in parts of what their slopes are changed by to make up for it
-ROUND = 0.02  # ... that is left to rays which are followed as they are, on spheres and cylinders
+ROUND = 0.02  # ... that is left to rays which are followed as they are, over ridges of spheres and cylinders
 ROUGH = 0.06  # ... that is left to rays which bend: next to the terminator straight light is wrong all over
 
 

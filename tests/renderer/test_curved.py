@@ -1,8 +1,9 @@
 """Grooves and ridges on round shapes, where the base falls away from its tangent plane within the reach of a shadow.
 
 FRAME.form is held against the map of the ground truth, pictures against the ground truth itself: where the base is seen
-at more than 20 degrees, as no method but `geometry` shows ridges that stand out at the outline. How much the form is
-worth is measured by taking it away, which leaves the tangent plane. `test_shell` has what `csg` does exactly.
+at more than 20 degrees, as `line` and `area` know no more than the tangent plane and its form. How much the form is
+worth is measured by taking it away, which leaves the tangent plane. `test_shell` has what `csg` does exactly,
+`test_outline` what is seen at the outline.
 """
 
 from __future__ import annotations
