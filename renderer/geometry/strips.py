@@ -197,9 +197,9 @@ def divide(
         radius = 1.0 / piece.curvature
         size = abs(radius)
         cx, cy = piece.x + dx - piece.ty * radius, piece.y + dy + piece.tx * radius
-        mitre = max(abs(piece.start_mitre), abs(piece.finish_mitre)) if piece.closed == 0 else 0.0
-        more = min(2.0 * mitre * piece.half, 0.5 * math.pi * size)
-        low, high = (0.0, piece.length) if piece.closed == 1 else (-more, piece.length + more)
+        most = 0.5 * math.pi * size  # that an arc goes on to its mitre; past other ends there would be slivers
+        low = -min(2.0 * abs(piece.start_mitre) * piece.half, most)
+        high = piece.length + min(2.0 * abs(piece.finish_mitre) * piece.half, most)
         # Chords whose mean leaves the arc by nothing, and their ends and middles by about half of this each.
         turn = min(math.sqrt(12.0 * tolerance / (size + piece.half)), BEND)
         step = piece.length / math.ceil(max(piece.length / (turn * size), 1.0))

@@ -218,3 +218,16 @@ def test_what_overhangs_on_arcs(plate: Plate, picture: Shot) -> None:
         line([0.2, 0.2], [0.7, 1.8], profile=scaled(PROFILES["lips"]), scale={"type": "linear", "start": 0, "end": 1}),
     ]
     near(plate(grooves, materials=PALETTE), picture, 0.9)
+
+
+@pytest.mark.parametrize("ends", ["flat", "profile"])
+@pytest.mark.parametrize("way", [[-0.3, 0.6, -0.4], [1, 0.45, -0.4], [-1, 0.2, -0.5]])
+def test_an_arc_before_a_sharp_corner(way: list[float], ends: str, plate: Plate, picture: Shot) -> None:
+    """Walls stand where the line goes on past the arc along their mitre, and across the arc's flat end."""
+    path = {"type": "svg", "d": "M1.31 .68 A.2 .2 0 0 0 1.343 .627 L1.23 .563"}
+    ridge = {"path": path, "profile": {"type": "v", "width": 0.28, "depth": -0.08}, "ends": ends}
+    camera = {"origin": [0, -0.5, 2.2], "target": [0.15, -0.3, 0], "fov": 20}
+    scene = plate([ridge], camera=camera, lights=[sun(*way)])
+    exact, mine = (picture(scene, method=method, samples=256).radiance for method in ("csg", "area"))
+    assert np.abs(mine - exact).max() < 0.02
+    assert np.abs(mine - exact).mean() < 2e-4
