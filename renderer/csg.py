@@ -80,7 +80,7 @@ def csg(
         frame = frames[footprint.frame]
         obj = objects[frame.object]
         view = view_of(footprint, frame, camera)
-        curved, rounded = is_curved(frame), is_round(obj, frame)
+        curved, rounded = is_curved(frame), is_round(obj, frame) or footprint.open == BESIDE
         dw = frame.eye[2]
         top = min(high + thin, dw * (1.0 - 1e-9))
 
