@@ -19,6 +19,7 @@ LEVELS = 4  # splits of a pixel on an edge: 256 footprints at most
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
 TURN = 0.25  # ... nor by more than 1 - cosine = TURN * tolerance (measured): a tangent plane errs as that does
 TURNS = 2  # splits for that alone: a mesh may turn in every triangle, however small
+CLOSE = 1e-3  # of a radius: no other object stands so near
 WITHIN = 1.0 - 1e-6  # of a cylinder's height: a place at its rim counts as one of its side
 OPEN = 1.5  # times the depth of the grooves: a footprint's corners may be seen at less slope than its centre
 
@@ -126,11 +127,12 @@ def footprints(
             eyes = eyes.copy()
             for k in np.unique(row[row >= 0]):
                 which = np.flatnonzero(row == k)
-                eyes[which], middle_rays[which] = beside_outline(shapes.objects[k], camera.origin, middle_rays[which])
-            which = np.flatnonzero(row >= 0)
-            middle[which] = shapes.hits(eyes[which], middle_rays[which])
-            beside[which] = (middle["object"][which] == row[which]) & (middle["face"][which] == 0)
-            mask[which] = shapes.blocked(eyes[which], middle_rays[which], middle[which], lights)
+                starts, ways = beside_outline(shapes.objects[k], camera.origin, middle_rays[which])
+                hits = shapes.hits(starts, ways)
+                on = (hits["object"] == k) & (hits["face"] == 0)
+                which, starts, ways, hits = which[on], starts[on], ways[on], hits[on]
+                eyes[which], middle_rays[which], middle[which], beside[which] = starts, ways, hits, True
+                mask[which] = shapes.blocked(starts, ways, hits, lights)
         smooth |= beside
         keep = np.flatnonzero(smooth & (middle["object"] >= 0))
         done.append(_framed(shapes, eyes, flat, pixel, x, y, size, middle_rays, middle, mask, beside, keep))
@@ -228,7 +230,7 @@ def beside_outline(obj: np.void, origin: Floats, directions: Floats) -> tuple[Fl
     out = place @ flat
     long = np.linalg.norm(out, axis=1)[:, None]
     out = np.where(long > 0.0, out / np.maximum(long, 1e-300), [1.0, 0.0, 0.0])
-    start = place @ (np.eye(3) - flat) + 2.0 * obj["size"][0] * out
+    start = place @ (np.eye(3) - flat) + (1.0 + CLOSE) * obj["size"][0] * out
     turn = obj["rotation"].T
     return obj["translation"] + start @ turn, -out @ turn
 
