@@ -29,8 +29,9 @@ class Sphere(Model):
 
 
 class Cylinder(Model):
-    """About the z axis, centred, closed by two bare caps that carry no pattern: grooves run out at them, ridges end flat.
+    """About the z axis, centred, closed by two bare caps that carry no pattern.
 
+    Grooves run out at the caps, ridges end flat there.
     u = angle / 360 degrees, counter-clockwise from +x seen from +z; v from 0 at the bottom to 1 at the top. The
     pattern ends at u = 0 and 1, unless it tiles.
     """
