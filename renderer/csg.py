@@ -132,12 +132,12 @@ def csg(
             if 0 <= shared <= FEW and bounces == 0:
                 across, down, corners = PROBE, PROBE, 4
             target = tolerance
-            if curved:
+            if curved and (not rounded or pattern.height > 0.0):
                 bowed = straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
-                if bowed > ROUGH and not rounded:
-                    target = max(tolerance, GRAINY)
-                elif ROUND < bowed <= ROUGH and rounded and pattern.height > 0.0:
+                if rounded and ROUND < bowed <= ROUGH:
                     target = max(tolerance, EASED * bowed)
+                elif not rounded and bowed > ROUGH:
+                    target = max(tolerance, GRAINY)
             target *= SURE / ease * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0

@@ -2,7 +2,8 @@
 
 A pixel whose corners and centre see one smooth surface, in one light, is one footprint. Any other is split in four
 again and again along the edge that runs through it, so that a silhouette is antialiased and the inside of a surface
-is still looked at once. Footprints of the last level take what one random point in them sees.
+is still looked at once. Footprints of the last level take what one random point in them sees. Where ridges may stand
+over the outline of a sphere or a cylinder, or grooves run out at its rim, a pixel stays whole, for `csg` to sample.
 """
 
 from __future__ import annotations

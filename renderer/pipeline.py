@@ -192,15 +192,8 @@ class Frame:
             return
         if not self.rays_go_on:
             start = time.perf_counter()
-            line(
-                MODES.get(settings.method, LOOSE),
-                settings.tolerance,
-                settings.bounces,
-                pattern,
-                seen.footprints,
-                chosen,
-                *self._of(part),
-            )
+            mode, rough = MODES.get(settings.method, LOOSE), self._rough(row)
+            line(mode, rough, settings.bounces, pattern, seen.footprints, chosen, *self._of(part))
             part.took("line", start)
             chosen = chosen[method[chosen] == NOT_MINE]
         if len(chosen):

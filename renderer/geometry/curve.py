@@ -207,10 +207,9 @@ def straightened(
     grooves that rise and sink the changes for the two make up for one another, the errors do not.
     """
     most = abs(eye_over(pattern.height, pattern.depth, pattern.width, frame) / frame.eye[2] - 1.0)
-    tall = pattern.height + pattern.depth
-    most = max(
-        most, abs(eye_over(tall, 0.0, pattern.width, frame) / frame.eye[2] - 1.0) if pattern.height > 0.0 else 0.0
-    )
+    if pattern.height > 0.0:
+        tall = eye_over(pattern.height + pattern.depth, 0.0, pattern.width, frame)
+        most = max(most, abs(tall / frame.eye[2] - 1.0))
     for l in range(len(lights)):
         if (blocked >> np.uint64(l)) & np.uint64(1):
             continue
