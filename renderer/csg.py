@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.curve import ROUGH, ROUND, is_curved, light_over, sight_over, straightened, turned, unsure
+from renderer.geometry.curve import ROUGH, is_curved, light_over, sight_over, straightened, turned, unsure
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import drawn, jitter, seed_of
 from renderer.geometry.rays import follow
@@ -43,7 +43,8 @@ PROBE = 4  # the corners and PROBE * PROBE samples,
 FIRST = 8  # else or then takes FIRST * FIRST,
 MOST = 64  # and at most MOST * MOST; a part of a pixel fewer
 GRAINY = 0.01  # the tolerance, at least, where a curved base makes rays bend much: many footprints at low light
-EASED = 0.25  # ... or this part of what straight rays would err by, where rays are followed as they are
+EASED = 0.25, 2.0  # ... or this part of what straight rays would err by, no more than so many tolerances
+STRATIFIED = 0.72  # of what sets neighbours apart is a stratum's own error: an edge between two counts (measured)
 SURE = 0.5  # how much of the tolerance the standard error may take
 
 
@@ -132,10 +133,10 @@ def csg(
             if 0 <= shared <= FEW and bounces == 0:
                 across, down, corners = PROBE, PROBE, 4
             target = tolerance
-            if curved and (not rounded or pattern.height > 0.0):
+            if curved:
                 bowed = straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
-                if rounded and ROUND < bowed <= ROUGH:
-                    target = max(tolerance, EASED * bowed)
+                if rounded:
+                    target = max(tolerance, min(EASED[0] * bowed, EASED[1] * tolerance))
                 elif not rounded and bowed > ROUGH:
                     target = max(tolerance, GRAINY)
             target *= SURE / ease * white(lighting, to_world(frame, view.p, view.q, 0.0))
@@ -291,7 +292,7 @@ def csg(
                 break
             if corners == 0 or alike:
                 pairs = across * (down - 1) + down * (across - 1)
-                error = math.sqrt(unlike / (2.0 * pairs) / taken)
+                error = STRATIFIED * math.sqrt(unlike / (2.0 * pairs) / taken)
                 if error <= target or across >= most:
                     break
             if corners > 0:

@@ -2,12 +2,14 @@
 
 A pixel whose corners and centre see one smooth surface, in one light, is one footprint. Any other is split in four
 again and again along the edge that runs through it, so that a silhouette is antialiased and the inside of a surface
-is still looked at once. Footprints of the last level take what one random point in them sees. Where ridges may stand
+is still looked at once. Footprints of the last level take what one random point in them sees; the tolerance says how
+small they are. Where ridges may stand
 over the outline of a sphere or a cylinder, or grooves run out at its rim, a pixel stays whole, for `csg` to sample.
 """
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -16,7 +18,8 @@ from numpy.typing import NDArray
 from renderer.geometry.shapes import Shells, touching
 from renderer.tables import BESIDE, CYLINDER, FOOTPRINT, FRAME, HIT, MESH, RECTANGLE, THROUGH, Camera, Floats, Ints
 
-LEVELS = 4  # splits of a pixel on an edge: 256 footprints at most
+LEVELS = 2, 7  # splits of a pixel on an edge, by tolerance
+CROWD = 4, 4  # but after the first number of splits, only while an edge meets no more than the second of parts a row
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
 TURN = 0.25  # ... nor by more than 1 - cosine = TURN * tolerance (measured): a tangent plane errs as that does
 TURNS = 2  # splits for that alone: a mesh may turn in every triangle, however small
@@ -79,6 +82,13 @@ def rays(camera: Camera, x: Floats, y: Floats) -> Floats:
     )
 
 
+def levels(tolerance: float) -> int:
+    """How often a pixel on an edge is split: of n parts along it each is off by a random part of itself, 1 / sqrt(12)
+    on root mean square, and twice what that is of the pixel, n^-1.5 of it, is the tolerance."""
+    parts = (2.0 / math.sqrt(12.0) / tolerance) ** (2.0 / 3.0)
+    return min(max(round(math.log2(parts)), LEVELS[0]), LEVELS[1])
+
+
 def flat_frames(shapes: Shapes, origin: Floats) -> dict[int, NDArray[np.void]]:
     """The one FRAME of each rectangle that the camera sees from the front, by row of OBJECT."""
     frames = {}
@@ -107,19 +117,23 @@ def footprints(
     first = (pixel // tile.width) * wide + pixel % tile.width
     around = np.stack([first, first + 1, first + wide, first + wide + 1])  # (4, n)
     size = 1.0
+    finest = levels(tolerance)
     done: list[Footprints] = []
-    for level in range(LEVELS + 1):
-        if level < LEVELS:
-            middle_rays = rays(camera, x + 0.5 * size, y + 0.5 * size)
-        else:
-            middle_rays = rays(camera, x + size * _inside(x, y, seed), y + size * _inside(y, x, seed))
+    for level in range(finest + 1):
+        last = np.full(len(pixel), level == finest)
+        if level >= CROWD[0]:
+            last |= np.bincount(pixel)[pixel] > CROWD[1] * 2**level
+        middle_rays = rays(
+            camera,
+            x + size * np.where(last, _inside(x, y, seed), 0.5),
+            y + size * np.where(last, _inside(y, x, seed), 0.5),
+        )
         middle = shapes.hits(camera.origin, middle_rays)
         mask = shapes.blocked(camera.origin, middle_rays, middle, lights)
-        if level < LEVELS:
+        smooth = last
+        if level < finest:
             turn = TURN * tolerance * 2**level if level < TURNS else 1.0  # an edge meets 2^level of 4^level parts
-            smooth = touching(middle, mask, corners, corner_mask, around, max(SMOOTH_COSINE, 1.0 - turn))
-        else:
-            smooth = np.ones(len(middle), np.bool_)
+            smooth |= touching(middle, mask, corners, corner_mask, around, max(SMOOTH_COSINE, 1.0 - turn))
         eyes, beside = np.broadcast_to(camera.origin, middle_rays.shape), np.zeros(len(middle), np.bool_)
         if level == 0 and shapes.shells is not None:
             outer = shapes.shell_hits(camera.origin, corner_rays)[around]
@@ -144,7 +158,7 @@ def footprints(
         pixel = np.repeat(pixel[split], 4)
         x = (x[split][:, None] + size * np.array([0.0, 1.0, 0.0, 1.0])).ravel()
         y = (y[split][:, None] + size * np.array([0.0, 0.0, 1.0, 1.0])).ravel()
-        if level + 1 < LEVELS:
+        if level + 1 < finest:
             cx = np.concatenate([x, x + size, x, x + size])
             cy = np.concatenate([y, y, y + size, y + size])
             directions = rays(camera, cx, cy)

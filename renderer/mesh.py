@@ -26,7 +26,9 @@ from renderer.sweep import (
     Prism,
     Ribbon,
     Stroke,
+    block,
     extent,
+    faces_of,
     positions,
     ribbons,
     solid,
@@ -305,24 +307,17 @@ def _join(parts: list[Manifold], how: OpType) -> Manifold:
 
 def _block(box: _Box, low: float, high: float) -> Manifold:
     """A block with no facets of its own."""
-    corners = np.array([[p, q, w] for w in (low, high) for q in (box.q0, box.q1) for p in (box.p0, box.p1)])
-    triangles = np.array(
-        [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6],
-         [1, 3, 5], [3, 7, 5]]
-    )  # fmt: skip
-    return solid([Faces(corners, triangles, np.zeros(len(triangles), np.int64))])
+    p, q = np.array([box.p0, box.p1, box.p0, box.p1]), np.array([box.q0, box.q0, box.q1, box.q1])
+    return solid([block(p, q, low, high)])
 
 
 def _mesh(pattern: Pattern, whole: Manifold, known: Facets) -> SolidMesh:
-    made = whole.to_mesh64()
-    triangles = np.asarray(made.tri_verts).astype(np.int32)
-    vertices = np.array(made.vert_properties[:, :3], np.float64)
-    if len(made.merge_from_vert):
-        index = np.arange(len(vertices), dtype=np.int32)
-        index[np.asarray(made.merge_from_vert, np.int64)] = np.asarray(made.merge_to_vert, np.int32)
-        triangles = index[triangles]
-    rows = np.array(known.rows)[np.asarray(made.face_id, np.int64)]
+    made = faces_of(whole)
+    rows = np.array(known.rows)[made.tags]
     names = np.concatenate([np.asarray(pattern.facet_slot, np.int32), [-1]]).astype(np.int32)
     return SolidMesh(
-        vertices, np.ascontiguousarray(triangles), names[rows[:, 0].astype(np.int64)], np.ascontiguousarray(rows[:, 1:])
+        made.vertices,
+        np.ascontiguousarray(made.triangles, np.int32),
+        names[rows[:, 0].astype(np.int64)],
+        np.ascontiguousarray(rows[:, 1:]),
     )

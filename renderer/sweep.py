@@ -15,7 +15,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from manifold3d import Error, Manifold, Mesh64
+from manifold3d import Error, Manifold, Mesh64, OpType
 from numpy.typing import NDArray
 
 from renderer.outline import Outline, Shape, added, removed
@@ -107,6 +107,7 @@ class Stroke(NamedTuple):
     hair: float
     tolerance: float
     outline: Outline | None  # of a profile that overhangs; its section is then level, and has but the places b
+    trims: tuple[End | None, End | None] = None, None  # planes that its swept solids are cut at
 
 
 def scale_of(pattern: Pattern, piece: np.void) -> Scale:
@@ -263,7 +264,20 @@ def strokes_of(pattern: Pattern, index: int, tolerance: float | None) -> list[St
                     body._replace(x=x, y=y, tx=outward * ty, ty=-outward * tx, curvature=0.0, length=0.0, section=cap,
                                   scale=still, start=near, finish=far)
                 )  # fmt: skip
-    return [*arcs(body._replace(start=cuts[0], finish=cuts[1])), *strokes]
+    body = body._replace(start=cuts[0], finish=cuts[1])
+    return [*arcs(body if curvature != 0.0 or exact else untrimmed(body)), *strokes]
+
+
+def untrimmed(stroke: Stroke) -> Stroke:
+    """A straight stroke whose mitres are cut when it has been swept: where the scale changes along a mitre it may meet
+    the line of one b more than once."""
+    reach = max(abs(float(stroke.section.b[0])), abs(float(stroke.section.b[-1]))) * stroke.scale.most + stroke.hair
+    start, finish = stroke.start, stroke.finish
+    return stroke._replace(
+        start=End(start.at - abs(start.slope) * reach),
+        finish=End(finish.at + abs(finish.slope) * reach),
+        trims=(start if start.slope != 0.0 else None, finish if finish.slope != 0.0 else None),
+    )
 
 
 def arcs(stroke: Stroke) -> list[Stroke]:
@@ -425,6 +439,8 @@ def ring_table(stroke: Stroke, section: Section) -> Floats:
     knots = np.zeros(0)
     if scale.kind == SCALE_TABLE and scale.t1 != scale.t0:
         knots = (scale.table[:, 0] - scale.t0) / (scale.t1 - scale.t0) * scale.length
+    if stroke.trims != (None, None):  # past the piece's ends the scale stays as it is
+        knots = np.concatenate([knots, [0.0, stroke.length]])
     if stroke.closed:
         count = max(3, math.ceil(stroke.length / step))
         at = np.unique(np.concatenate([np.arange(count) * (stroke.length / count), knots]))
@@ -459,6 +475,43 @@ def ring_table(stroke: Stroke, section: Section) -> Floats:
         rings.append((1.0 - u) * last + u * end)
     rings.append(end[None, :])
     return np.concatenate(rings)
+
+
+def _trimmed(ribbon: Ribbon | Prism, made: Faces, shift: tuple[float, float]) -> Faces:
+    """What the planes of its stroke's mitres leave of a ribbon's or prism's solid."""
+    stroke = ribbon.stroke
+    for which, end in enumerate(stroke.trims):
+        if end is None or len(made.triangles) == 0:
+            continue
+        outward = 2.0 * which - 1.0
+        longer = ribbon.rings[-1].max() - stroke.finish.at if which else stroke.start.at - ribbon.rings[0].min()
+        s, b = _local(stroke, made.vertices[:, 0] - shift[0], made.vertices[:, 1] - shift[1])
+        far = 1.0 + float(np.abs(b).max()), 1.0 + float(np.ptp(s)) + 2.0 * abs(end.slope) * (1.0 + np.abs(b).max())
+        line = end.at + outward * longer + end.slope * np.array([-far[0], far[0]])
+        corners_s = np.concatenate([line, line + outward * far[1]])
+        p, q = positions(stroke, corners_s, np.tile([-far[0], far[0]], 2))
+        low, high = float(made.vertices[:, 2].min()) - 1.0, float(made.vertices[:, 2].max()) + 1.0
+        beyond = solid([block(p + shift[0], q + shift[1], low, high)])
+        made = faces_of(Manifold.batch_boolean([solid([made]), beyond], OpType.Subtract))
+    return made
+
+
+def _local(stroke: Stroke, p: Floats, q: Floats) -> tuple[Floats, Floats]:
+    """(s, b) of points of the plane, for a straight stroke."""
+    x, y = p - stroke.x, q - stroke.y
+    return x * stroke.tx + y * stroke.ty, y * stroke.tx - x * stroke.ty
+
+
+def block(p: Floats, q: Floats, low: float, high: float) -> Faces:
+    """A block over a quadrilateral, (4,) each: two sides' ends, one after the other. It has no facets of its own."""
+    corners = np.stack([np.tile(p, 2), np.tile(q, 2), np.repeat([low, high], 4)], axis=1)
+    triangles = np.array(
+        [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6],
+         [1, 3, 5], [3, 7, 5]], np.int64
+    )  # fmt: skip
+    if (p[1] - p[0]) * (q[2] - q[0]) - (q[1] - q[0]) * (p[2] - p[0]) < 0.0:
+        triangles = triangles[:, ::-1]
+    return Faces(corners, triangles, np.zeros(len(triangles), np.int64))
 
 
 def _groups(b: Floats) -> list[tuple[int, int]]:
@@ -667,7 +720,7 @@ def sweep(ribbon: Ribbon | Prism, shift: tuple[float, float], known: Facets) -> 
         if len(upper):
             b[:, upper[0]] -= stroke.hair * ribbon.widen[0]
             b[:, upper[-1]] += stroke.hair * ribbon.widen[1]
-        return _along(stroke, s, b, w, shape.edges, shape.triangles, shift, known)
+        return _trimmed(ribbon, _along(stroke, s, b, w, shape.edges, shape.triangles, shift, known), shift)
     section = ribbon.section
     edges, caps, groups = _loop(section, ribbon.up)
     m, n = len(section.b), len(groups)
@@ -683,7 +736,7 @@ def sweep(ribbon: Ribbon | Prism, shift: tuple[float, float], known: Facets) -> 
     w[:, :m] = factor[:, :m] * section.w
     w[:, m:] = ribbon.flat
     made = _along(stroke, s, b, w, edges, caps, shift, known)
-    return made if ribbon.up else made._replace(triangles=made.triangles[:, ::-1])
+    return _trimmed(ribbon, made if ribbon.up else made._replace(triangles=made.triangles[:, ::-1]), shift)
 
 
 def _along(
@@ -739,3 +792,15 @@ def solid(parts: list[Faces]) -> Manifold:
     if made.status() != Error.NoError:
         raise ValueError(f"a swept piece is not a closed solid: {made.status()}")
     return made
+
+
+def faces_of(made: Manifold) -> Faces:
+    """The mesh of a solid."""
+    mesh = made.to_mesh64()
+    triangles = np.asarray(mesh.tri_verts).astype(np.int64)
+    vertices = np.array(mesh.vert_properties[:, :3], np.float64)
+    if len(mesh.merge_from_vert):
+        index = np.arange(len(vertices))
+        index[np.asarray(mesh.merge_from_vert, np.int64)] = np.asarray(mesh.merge_to_vert, np.int64)
+        triangles = index[triangles]
+    return Faces(vertices, triangles, np.asarray(mesh.face_id, np.int64))
