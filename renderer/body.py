@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from manifold3d import CrossSection, FillRule, triangulate
 from numpy.typing import NDArray
 
 from renderer import mesh
@@ -29,6 +30,7 @@ LIMIT = 12_000_000
 
 _BOUNCE = 8.0
 """Heights and widths of the pattern's grooves: how far beyond a plate's edge a bounce is followed along them."""
+_SLIVER = 1e-7  # of the seam's length squared: less of a wall is none
 _FAR = 400.0  # heights of the pattern: how far beyond a plate's edge grooves still stand in the light
 
 
@@ -160,8 +162,12 @@ def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Bo
             )  # fmt: skip
     flat, slot, bend = sheet(pattern, window)
     if shape != MESH:
-        kept = ~_inner(flat, window)
-        flat, slot, bend = flat[kept], slot[kept], bend[kept]
+        kept, walls = _seamed(flat, window)
+        flat, slot = (
+            np.concatenate([flat[kept], walls]),
+            np.concatenate([slot[kept], np.full(len(walls), -1, np.int32)]),
+        )
+        bend = np.concatenate([bend[kept], np.zeros((len(walls), 4))])
     coordinates, source, cell = cut(base, flat, CELL, LIMIT)
     if shape == MESH:
         coordinates[..., :2] = barycentric(base.pq[cell], coordinates[..., :2])[..., 1:]
@@ -296,21 +302,21 @@ def places(corners: Floats) -> Ints:
     return np.unique(grid, axis=0, return_inverse=True)[1].reshape(-1, 3).astype(np.int32)
 
 
-def _inner(flat: Floats, window: Floats) -> NDArray[np.bool_]:
-    """Which of the sheet's triangles (n, 3, 3) are sides along the seam that no sphere or cylinder has, as the grooves
-    are the same on both."""
-    left, right = (flat[:, :, 0] == window[0]).all(axis=1), (flat[:, :, 0] == window[2]).all(axis=1)
-    one, two = _moments(flat[left][:, :, 1:]), _moments(flat[right][:, :, 1:])
-    alike = np.allclose(one, two, rtol=1e-9, atol=1e-12 * float(np.abs(one).max()))
-    return np.asarray((left | right) & alike)
-
-
-def _moments(plane: Floats) -> Floats:
-    """Area, and means of x, y and their squares over triangles (n, 3, 2), all together."""
-    one, two = plane[:, 1] - plane[:, 0], plane[:, 2] - plane[:, 0]
-    area = 0.5 * np.abs(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])
-    square = ((plane**2).sum(axis=1) + plane.sum(axis=1) ** 2) / 12.0
-    return np.array([area.sum(), *(area @ plane.mean(axis=1)), *(area @ square)])
+def _seamed(flat: Floats, window: Floats) -> tuple[NDArray[np.bool_], Floats]:
+    """Which of the sheet's triangles (n, 3, 3) are no sides along the seam, and the sides (m, 3, 3) that spheres and
+    cylinders have there: where the solid goes on only one way."""
+    on = [(flat[:, :, 0] == window[side]).all(axis=1) for side in (0, 2)]
+    scale = window[3] - window[1]  # as cross-sections are rounded to 1e-8
+    walls = [CrossSection(list(flat[side][:, :, 1:] / scale), FillRule.NonZero) for side in on]
+    made = [np.zeros((0, 3, 3))]
+    for side, (wall, other) in enumerate((walls, walls[::-1])):
+        parts = [part for part in (wall - other).decompose() if part.area() > _SLIVER]
+        polygons = [polygon for part in parts for polygon in part.to_polygons()]
+        if polygons:
+            corners = np.concatenate(polygons)[triangulate(polygons)] * scale
+            wide = np.insert(corners, 0, window[2 * side], axis=2)
+            made.append(wide if side else wide[:, ::-1])
+    return ~(on[0] | on[1]), np.concatenate(made)
 
 
 def _caps(base: Base, bottom: float) -> Floats:
