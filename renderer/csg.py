@@ -43,7 +43,7 @@ PROBE = 4  # the corners and PROBE * PROBE samples,
 FIRST = 8  # else or then takes FIRST * FIRST,
 MOST = 64  # and at most MOST * MOST; a part of a pixel fewer
 GRAINY = 0.01  # the tolerance, at least, where a curved base makes rays bend much: many footprints at low light
-EASED = 0.25, 2.0  # ... or this part of what straight rays would err by, no more than so many tolerances
+EASED = 2.0  # tolerances, at most, where straight rays would err by more
 STRATIFIED = 0.72  # of what sets neighbours apart is a stratum's own error: an edge between two counts (measured)
 SURE = 0.5  # how much of the tolerance the standard error may take
 
@@ -136,7 +136,7 @@ def csg(
             if curved:
                 bowed = straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
                 if rounded:
-                    target = max(tolerance, min(EASED[0] * bowed, EASED[1] * tolerance))
+                    target = max(tolerance, min(bowed, EASED * tolerance))
                 elif not rounded and bowed > ROUGH:
                     target = max(tolerance, GRAINY)
             target *= SURE / ease * white(lighting, to_world(frame, view.p, view.q, 0.0))

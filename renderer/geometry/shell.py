@@ -227,9 +227,9 @@ def pass_through(
         return Passage(OPEN, here[0], here[1], here[2], 0.0, 0.0, True, leaves)
     nearest = min(max(-m[1] / m[0], begin), final) if m[0] > 0.0 else begin  # where it is deepest, and most level
     speed = math.sqrt(max(sideways(m, begin), sideways(m, nearest), sideways(m, final), 0.0))
-    sinks = math.nan  # chords of a ray that turns within the shell lie above it: they end where it dips into the body
-    if begin < nearest < final:
-        sinks = crossings(obj, m, 0.0)[0]
+    sinks = math.nan  # chords of a ray that turns within the shell lie above it: they end where it has dipped into the
+    if begin < nearest < final:  # body, by more than rounding
+        sinks = crossings(obj, m, -thin_of(pattern))[0]
     seam = -o[1] / d[1] if d[1] != 0.0 else math.nan  # where p begins again, or half a turn from there
     bow = 8.0 * STRAY * (pattern.height + pattern.depth)
     gp = gq = 0.0
