@@ -83,9 +83,10 @@ def rays(camera: Camera, x: Floats, y: Floats) -> Floats:
 
 
 def levels(tolerance: float) -> int:
-    """How often a pixel on an edge is split: of n parts along it each is off by a random part of itself, 1 / sqrt(12)
-    on root mean square, and twice what that is of the pixel, n^-1.5 of it, is the tolerance."""
-    parts = (2.0 / math.sqrt(12.0) / tolerance) ** (2.0 / 3.0)
+    """How often a pixel on an edge is split. Each of n parts along it is in or out by chance, off by 1 / sqrt(6) on
+    root mean square; what that is of the pixel, n^-1.5 of it, is the tolerance. For an edge of half of white that is
+    two deviations."""
+    parts = (1.0 / math.sqrt(6.0) / tolerance) ** (2.0 / 3.0)
     return min(max(round(math.log2(parts)), LEVELS[0]), LEVELS[1])
 
 

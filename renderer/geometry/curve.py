@@ -23,7 +23,7 @@ from renderer.tables import Floats, Pattern
 BOWED = 0.03  # the error that is left, in parts of the angle by which the base turns within reach (measured)
 
 BOWED_STRAIGHT = 0.0625  # ... where rays are straight, in squares of the part by which their slopes change to make up
-BOWED_BELOW = 0.5  # ... in squares of the angle by which the base turns from where it is met to what is seen below
+BOWED_BELOW = 0.25  # ... in squares of the angle by which the base turns from where it is met to what is seen below
 ROUGH = 0.0225  # ... that is left to rays which bend: next to the terminator straight light is wrong all over
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from renderer import body, pipeline
+from renderer.compile import PatternCache, compile_scene
 from renderer.errors import RenderError
 from renderer.geometry.overlay import bins, cut_by_grid, cut_by_triangles
 from renderer.tables import CYLINDER, SPHERE, Floats, Ints
@@ -97,6 +98,29 @@ def test_parts_of_a_grid_leave_no_gap() -> None:
     column = cells % (len(p) - 1)
     assert np.all(low >= p[column] - 1e-12)
     assert np.all(high <= p[column + 1] + 1e-12)
+
+
+def test_a_wall_along_the_seam_is_where_the_solid_ends(check: Callable[[Json], Any]) -> None:
+    """A groove that comes to the seam square, from one side: its cross-section. From both: none."""
+    window = np.array([0.0, 0.0, 3.0, 2.0])
+    for start, area_of in ((0.9, 0.5 * 0.3 * 0.2), (-1.0, 0.0)):
+        data = {
+            "intaglio": 1, "camera": {"origin": [3, 0, 0], "target": [0, 0, 0]}, "lights": [],
+            "materials": {"stone": {}}, "objects": [{
+                "shape": {"type": "sphere", "radius": 1}, "mapping": {"scale": [3, 2]}, "material": "stone",
+                "pattern": "cut",
+            }],
+            "patterns": {"cut": {"grooves": [{
+                "path": {"type": "polyline", "points": [[start, 1], [4, 1]]},
+                "profile": {"type": "v", "width": 0.3, "depth": 0.2},
+            }]}},
+        }  # fmt: skip
+        pattern = compile_scene(check(data), (8, 6), PatternCache(), None).patterns[0]
+        flat, _, _ = body.sheet(pattern, window)
+        kept, walls = body._seamed(flat, window)
+        assert area(walls[:, :, 1:]) == pytest.approx(area_of, abs=1e-7)
+        assert np.all(walls[:, :, 0] == 0.0)  # the solid ends at its first p, where the groove has not begun
+        assert not np.any((flat[kept][:, :, 0] == 3.0).all(axis=1))
 
 
 def test_parts_of_a_mesh_leave_no_gap() -> None:

@@ -498,6 +498,15 @@ def test_heights_of_scales(kind: int, numbers: tuple[float, float, float], table
     agree(m)
 
 
+@pytest.mark.parametrize(("kind", "numbers"), [(SCALE_LINEAR, (0.3, 1.5, 0.0)), (SCALE_SINE, (0.4, 4.0, 0.5))])
+@pytest.mark.parametrize("profile", [V, RIDGE, SKEW])
+def test_heights_of_scales_in_sharp_corners(profile: Points, kind: int, numbers: tuple[float, float, float]) -> None:
+    """Past a line's end the scale stays, also where a mitre leads that far."""
+    m = Maker()
+    m.polyline(m.groove(profile, kind=kind, numbers=numbers), [(-0.7, 0.3), (0.6, -0.2), (-0.3, 0.5), (-0.7, -0.4)])
+    agree(m)
+
+
 def test_heights_of_tiles() -> None:
     m = Maker(tile=(0.7, 0.5))
     m.line(m.groove(V), (0.1, 0.1), (0.55, 0.3), ends=(PROFILE, PROFILE))

@@ -307,6 +307,20 @@ def test_on_curved_shapes(plate: Plate, radiance: Radiance) -> None:
     assert np.sqrt(np.mean((csg - truth) ** 2)) < 1.5 * noise
 
 
+@pytest.mark.parametrize("lips", [[[-0.12, 0], [-0.18, -0.1], [0.12, -0.1], [0.12, 0]], DOVETAIL])
+def test_nothing_lights_what_nothing_stands_over(lips: Points, plate: Plate, radiance: Radiance) -> None:
+    """The bare part of a sphere shines as it does alone, over an undercut too, where sight leaves the shell and comes
+    in again."""
+    data = plate([cut([[-3, 0.5], [3, 0.5]], lips)], camera={"origin": [0, -4, 0.9], "target": [0, 0, 0.75], "fov": 14})
+    data["objects"][0] |= {"shape": {"type": "sphere", "radius": 1}, "mapping": {"scale": [2, 2], "offset": [-1, -1]}}
+    data |= {"lights": [], "materials": {"stone": data["materials"]["stone"] | {"emissive": [0.25] * 3}}}
+    alone, more = (radiance(data | {"render": {"bounces": n}}, method="csg", samples=16) for n in (0, 1))
+    truth = radiance(data | {"render": {"bounces": 1}}, method="geometry", samples=16)
+    bare = truth[:14].max(axis=2) == 0.25  # above the groove
+    assert bare.sum() > 50
+    assert np.abs(more[:14] - alone[:14])[bare].max() == 0.0
+
+
 @pytest.mark.parametrize("name", PROFILES)
 def test_solids_are_closed(name: str) -> None:
     """All of them, everywhere: straight between flat ends they hold what the polyline says, on a circle Pappus."""
