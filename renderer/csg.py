@@ -137,7 +137,7 @@ def csg(
                 bowed = straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
                 if rounded:
                     target = max(tolerance, min(bowed, EASED * tolerance))
-                elif not rounded and bowed > ROUGH:
+                elif bowed > ROUGH:
                     target = max(tolerance, GRAINY)
             target *= SURE / ease * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)

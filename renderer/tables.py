@@ -242,6 +242,7 @@ FRAME = np.dtype(
         ("eye", "f8", (3,)),  # the camera in pattern space (absolute p, q; w)
         ("form", "f8", (3,)),  # a, b, c: (a dp^2 + 2 b dp dq + c dq^2) / 2 is how far the surface falls below the
         # plane, pattern units (the second fundamental form over sigma); 0 where it is flat
+        ("lean", "f8"),  # the slope of what lies a pattern unit high or deep all over, as sigma changes along a sphere
     ]
 )
 """The tangent plane at a surface point: X = origin + axes (x - (pq, 0)). A flat object has one for all its pixels."""

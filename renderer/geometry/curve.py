@@ -22,9 +22,9 @@ from renderer.tables import Floats, Pattern
 
 BOWED = 0.03  # the error that is left, in parts of the angle by which the base turns within reach (measured)
 
-BOWED_STRAIGHT = 0.0625  # ... where rays are straight, in squares of the part by which their slopes change to make up
-BOWED_BELOW = 0.25  # ... in squares of the angle by which the base turns from where it is met to what is seen below
-ROUGH = 0.0225  # ... that is left to rays which bend: next to the terminator straight light is wrong all over
+BOWED_STRAIGHT = 0.1  # ... where rays are straight, in parts of what their slopes are changed by to make up for it
+BOWED_LEAN = 0.5  # ... in parts of the slope of the highest and lowest points, as the size of grooves changes
+ROUGH = 0.03  # ... that is left to rays which bend: next to the terminator straight light is wrong all over
 
 
 class Bow(NamedTuple):
@@ -203,12 +203,10 @@ def straightened(
 ) -> float:
     """About the error of straight rays, relative to white.
 
-    It goes with the square of the part by which `eye_over` and `light_over` change a slope of sight or light at (p, q),
-    the most. Of grooves that rise and sink the changes for the two make up for one another, the errors do not. And with
-    that of the angle by which the base turns on the way from (p, q) to the grooves' highest or lowest points.
+    It goes with the part by which `eye_over` and `light_over` change a slope of sight or light at (p, q), the most. Of
+    grooves that rise and sink the changes for the two make up for one another, the errors do not. On spheres it goes
+    with what is lost of the slope of the highest and lowest points, too.
     """
-    x, y = applied(frame, (frame.eye[0] - p) / frame.eye[2], (frame.eye[1] - q) / frame.eye[2])
-    turn = math.hypot(x, y) * max(pattern.height, pattern.depth)
     most = abs(eye_over(pattern.height, pattern.depth, pattern.width, frame) / frame.eye[2] - 1.0)
     if pattern.height > 0.0:
         tall = eye_over(pattern.height + pattern.depth, 0.0, pattern.width, frame)
@@ -220,4 +218,4 @@ def straightened(
         own = light_to_pattern(frame, lights[l])[2]
         if d[2] > 0.0:
             most = max(most, abs(d[2] - own) / d[2])
-    return max(BOWED_STRAIGHT * most * most, BOWED_BELOW * turn * turn)
+    return max(BOWED_STRAIGHT * most, BOWED_LEAN * frame.lean * max(pattern.height, pattern.depth))
