@@ -163,10 +163,8 @@ def _shell(row: int, obj: np.void, pattern: Pattern, triangles: Triangles) -> Bo
     flat, slot, bend = sheet(pattern, window)
     if shape != MESH:
         kept, walls = _seamed(flat, window)
-        flat, slot = (
-            np.concatenate([flat[kept], walls]),
-            np.concatenate([slot[kept], np.full(len(walls), -1, np.int32)]),
-        )
+        flat = np.concatenate([flat[kept], walls])
+        slot = np.concatenate([slot[kept], np.full(len(walls), -1, np.int32)])
         bend = np.concatenate([bend[kept], np.zeros((len(walls), 4))])
     coordinates, source, cell = cut(base, flat, CELL, LIMIT)
     if shape == MESH:

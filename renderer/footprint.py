@@ -3,8 +3,8 @@
 A pixel whose corners and centre see one smooth surface, in one light, is one footprint. Any other is split in four
 again and again along the edge that runs through it, so that a silhouette is antialiased and the inside of a surface
 is still looked at once. Footprints of the last level take what one random point in them sees; the tolerance says how
-small they are. Where ridges may stand
-over the outline of a sphere or a cylinder, or grooves run out at its rim, a pixel stays whole, for `csg` to sample.
+small they are. Where ridges may stand over the outline of a sphere or a cylinder, or grooves run out at its rim, a
+pixel stays whole, for `csg` to sample.
 """
 
 from __future__ import annotations
@@ -124,11 +124,9 @@ def footprints(
         last = np.full(len(pixel), level == finest)
         if level >= CROWD[0]:
             last |= np.bincount(pixel)[pixel] > CROWD[1] * 2**level
-        middle_rays = rays(
-            camera,
-            x + size * np.where(last, _inside(x, y, seed), 0.5),
-            y + size * np.where(last, _inside(y, x, seed), 0.5),
-        )
+        u, v = np.full(len(pixel), 0.5), np.full(len(pixel), 0.5)
+        u[last], v[last] = _inside(x[last], y[last], seed), _inside(y[last], x[last], seed)
+        middle_rays = rays(camera, x + size * u, y + size * v)
         middle = shapes.hits(camera.origin, middle_rays)
         mask = shapes.blocked(camera.origin, middle_rays, middle, lights)
         smooth = last

@@ -24,7 +24,7 @@ import schema
 from renderer import CACHE, body, bounce, film, relief, shading
 from renderer.area import area_sampling, in_blocks
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
-from renderer.csg import csg
+from renderer.csg import MOST, PROBE, csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
 from renderer.geometry.curve import ROUGH
@@ -39,7 +39,6 @@ from renderer.trace import Truth
 TILE = 64  # pixels
 RAYS = 1 << 16  # from one object to others, at a time
 EDGE = 0.2  # twice a quarter over the square root of six
-PROBE, MOST = 16, 4096  # samples
 FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
@@ -164,7 +163,7 @@ class Frame:
         settings = self.settings
         if settings.method != "auto" or bounces > 0:
             return settings.samples
-        return min(max(math.ceil(math.pow(EDGE / settings.tolerance, 4.0 / 3.0)), PROBE), MOST)
+        return min(max(math.ceil(math.pow(EDGE / settings.tolerance, 4.0 / 3.0)), PROBE**2), MOST**2)
 
     def _strata(self) -> tuple[int, int]:
         """Of a footprint's samples, across and down."""
