@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.curve import is_curved, sight_over
+from renderer.geometry.curve import is_curved
 from renderer.geometry.query import nearby
 from renderer.geometry.random import jitter, seed_of
 from renderer.geometry.rays import follow
@@ -20,6 +20,7 @@ from renderer.geometry.shapes import local
 from renderer.geometry.shell import LEVEL, ahead, chart, entered, from_world, is_round
 from renderer.geometry.solid import leveled, thin_of
 from renderer.geometry.spans import events
+from renderer.geometry.straight import sight_over
 from renderer.kernel import borrow, keep, kernel
 from renderer.shading import direction_to_pattern, sky_from, unit
 from renderer.tables import BARE, MESH, RAY, RECTANGLE, Camera, Floats, Ints, Lighting, Pattern

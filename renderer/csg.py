@@ -14,13 +14,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.curve import ROUGH, is_curved, light_over, sight_over, straightened, turned, unsure
+from renderer.geometry.curve import is_curved, turned, unsure
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import drawn, jitter, seed_of
 from renderer.geometry.rays import follow
 from renderer.geometry.shell import is_round, is_shaded, placed, raised, seen_from
 from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_ray, thin_of
 from renderer.geometry.spans import END, PLANE, events
+from renderer.geometry.straight import light_over, sight_over, straightened
 from renderer.geometry.view import on_plane, through_screen, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.scattering import scatter
@@ -43,7 +44,7 @@ PROBE = 4  # the corners and PROBE * PROBE samples,
 FIRST = 8  # else or then takes FIRST * FIRST,
 MOST = 64  # and at most MOST * MOST; a part of a pixel fewer
 GRAINY = 0.01  # the tolerance, at least, where a curved base makes rays bend much: many footprints at low light
-EASED = 2.0  # tolerances, at most, where straight rays would err by more
+BENT = 0.3  # ... by this part of its slope
 STRATIFIED = 0.72  # of what sets neighbours apart is a stratum's own error: an edge between two counts (measured)
 SURE = 0.5  # how much of the tolerance the standard error may take
 
@@ -133,12 +134,9 @@ def csg(
             if 0 <= shared <= FEW and bounces == 0:
                 across, down, corners = PROBE, PROBE, 4
             target = tolerance
-            if curved:
-                bowed = straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
-                if rounded:
-                    target = max(tolerance, min(bowed, EASED * tolerance))
-                elif bowed > ROUGH:
-                    target = max(tolerance, GRAINY)
+            bends = curved and not rounded
+            if bends and straightened(pattern, frame, view.p, view.q, footprint.blocked, lights) > BENT:
+                target = max(tolerance, GRAINY)
             target *= SURE / ease * white(lighting, to_world(frame, view.p, view.q, 0.0))
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0

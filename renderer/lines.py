@@ -39,6 +39,7 @@ from renderer.geometry.sight import (
     is_over,
     is_plain,
     may_light,
+    place_on,
     see,
     seen_of,
     slot_of,
@@ -166,11 +167,12 @@ def subtract(parts: Floats, n: int, low: float, high: float, sine_low: float, si
 
 @leaf
 def hide(
-    s: int, f: int, which: int, lines: int, footprint: np.void, faces: Faces, seen: Seen, samples: Samples
+    s: int, f: int, which: int, lines: int, footprint: np.void, frame: np.void, faces: Faces, seen: Seen,
+    samples: Samples,
 ) -> bool:  # fmt: skip
     """Take what source s does not see of face f out of `samples.part[which]`. False where there is no room."""
     for k in range(seen.heres[s]):
-        count = hidden_by(seen.away[s, seen.here[s, k]], s, f, footprint, faces, seen, samples.plane)
+        count = hidden_by(seen.away[s, seen.here[s, k]], s, f, footprint, frame, faces, seen, samples.plane)
         if count < 0:
             return False
         if count == 0:
@@ -310,7 +312,7 @@ def line_sampling(
                             for i in range(samples.parts[0, l]):
                                 part, lit = samples.part[0, l, i], samples.part[1, l, i]
                                 lit[LOW], lit[HIGH], lit[SINE_LOW], lit[SINE_HIGH] = part[LOW], part[HIGH], 0.0, 0.0
-                    if not hide(source, f, which, lines, footprint, faces, seen, samples):
+                    if not hide(source, f, which, lines, footprint, frame, faces, seen, samples):
                         room = False
                         break
                     left = 0
@@ -330,6 +332,10 @@ def line_sampling(
                                 for k in range(4):
                                     samples.seen[l, at, k] = part[k]
                                 colour[3] += long
+                                if left == samples.parts[0, l] and i == 0:  # the first of all
+                                    t = 0.5 * (part[LOW] + part[HIGH])
+                                    u, v = (t, samples.place[l]) if samples.down[l] == 0 else (samples.place[l], t)
+                                    place_on(f, footprint, u, v, seen)
                             else:
                                 samples.sine[l] += part[SINE_LOW] + part[SINE_HIGH]
                             if plain:

@@ -27,7 +27,6 @@ from renderer.compile import CompiledScene, PatternCache, compile_scene, table_b
 from renderer.csg import MOST, PROBE, csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
-from renderer.geometry.curve import ROUGH
 from renderer.geometry.strips import STRIPS
 from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
@@ -38,6 +37,7 @@ from renderer.trace import Truth
 
 TILE = 64  # pixels
 RAYS = 1 << 16  # from one object to others, at a time
+ROUGH = 0.03  # the error that may be left on meshes' curved bases: next to the terminator light is wrong all over
 EDGE = 0.2  # twice a quarter over the square root of six
 FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes

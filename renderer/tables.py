@@ -242,7 +242,8 @@ FRAME = np.dtype(
         ("eye", "f8", (3,)),  # the camera in pattern space (absolute p, q; w)
         ("form", "f8", (3,)),  # a, b, c: (a dp^2 + 2 b dp dq + c dq^2) / 2 is how far the surface falls below the
         # plane, pattern units (the second fundamental form over sigma); 0 where it is flat
-        ("lean", "f8"),  # the slope of what lies a pattern unit high or deep all over, as sigma changes along a sphere
+        ("drift", "f8", (3,)),  # how a sphere's coordinates bend along the surface, and sigma changes: Christoffel's
+        # symbols q_pp and p_pq, and d ln(sigma) / dq, per pattern unit
     ]
 )
 """The tangent plane at a surface point: X = origin + axes (x - (pq, 0)). A flat object has one for all its pixels."""

@@ -10,9 +10,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from renderer.geometry.curve import eye_over, light_over
 from renderer.geometry.polygon import CORNERS, Counts, clipped
 from renderer.geometry.view import View, on_plane
 from renderer.kernel import leaf
@@ -41,20 +39,15 @@ def domain_of() -> Domain:
 
 
 @leaf
-def aim(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], domain: Domain) -> None:
+def aim(view: View, source: Floats, domain: Domain) -> None:
     """Choose the axes for a footprint."""
     domain.axis[0, 0], domain.axis[0, 1], domain.axis[1, 0], domain.axis[1, 1] = 1.0, 0.0, 0.0, 1.0
     n = 2
-    for l in range(-1, len(lights)):
-        if l < 0:
-            x, y = frame.eye[0] - view.p, frame.eye[1] - view.q
-        else:
-            d = light_over(
-                pattern.height, pattern.width, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height
-            )
-            x, y = d[0] - d[3] * view.p, d[1] - d[3] * view.q
-            if d[2] <= 0.0:
-                continue
+    for l in range(-1, len(source) - 1):  # the eye first
+        d = source[l]
+        x, y = d[0] - d[3] * view.p, d[1] - d[3] * view.q
+        if l >= 0 and d[2] <= 0.0:
+            continue
         long = math.hypot(x, y)
         if n < AXES and long > 0.0:
             domain.axis[n, 0], domain.axis[n, 1] = -y / long, x / long
@@ -63,24 +56,22 @@ def aim(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], 
 
 
 @leaf
-def spread(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], domain: Domain) -> bool:
+def spread(pattern: Pattern, view: View, source: Floats, margin: float, domain: Domain) -> bool:
     """Write the slabs of a footprint along the axes chosen; False where they have no end."""
-    high, low, dw = pattern.height, -pattern.depth, eye_over(pattern.height, pattern.depth, pattern.width, frame)
+    high, low, eye = pattern.height, -pattern.depth, source[len(source) - 1]
     n, slab = domain.made[0], domain.slab
     for k in range(n):
         slab[k, 0], slab[k, 1] = math.inf, -math.inf
-    top = min(high, dw)
+    top = min(high, eye[2])
     for i in range(8):
         cp, cq = on_plane(view, float(i & 1), float((i >> 1) & 1))
         w = low if i < 4 else top
-        x, y = cp + w * (frame.eye[0] - cp) / dw, cq + w * (frame.eye[1] - cq) / dw
+        x, y = cp + w * (eye[0] - cp) / eye[2], cq + w * (eye[1] - cq) / eye[2]
         for k in range(n):
             along = domain.axis[k, 0] * x + domain.axis[k, 1] * y
             slab[k, 0], slab[k, 1] = min(slab[k, 0], along), max(slab[k, 1], along)
-        for l in range(len(lights)):
-            d = light_over(
-                pattern.height, pattern.width, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height
-            )
+        for l in range(len(source) - 1):
+            d = source[l]
             if d[2] <= 0.0:
                 continue
             way = (high - w) / d[2] if d[3] == 0.0 else min((high - w) / max(d[2] - w, 1e-300), 1.0)
@@ -90,6 +81,8 @@ def spread(pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void
                 slab[k, 0], slab[k, 1] = min(slab[k, 0], along), max(slab[k, 1], along)
     finite = True
     for k in range(n):
+        wide = margin * (slab[k, 1] - slab[k, 0])
+        slab[k, 0], slab[k, 1] = slab[k, 0] - wide, slab[k, 1] + wide
         finite = finite and slab[k, 1] - slab[k, 0] < math.inf
     return finite
 

@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.cells import Cells, carve, cells_of
+from renderer.geometry.curve import is_curved
 from renderer.geometry.domain import Domain, aim, domain_of, settle, spread
 from renderer.geometry.faces import EDGE, Faces, envelope, faces_of
 from renderer.geometry.query import Nearby, find, nearby
 from renderer.geometry.regions import BANDS, REMOVALS, Regions, regions_of, unite
+from renderer.geometry.straight import straighten
 from renderer.geometry.strips import Strips, divide, lay, overhangs, strips_of
 from renderer.geometry.view import GRAZING, View, on_plane, slope_at, view_of
 from renderer.kernel import fixed, leaf
@@ -24,6 +26,7 @@ from renderer.tables import FOOTPRINT, SCALE_CONSTANT, Camera, Floats, Pattern
 CAPACITY = fixed(2048)  # pieces near a domain
 CHORD = 4.0  # how far chords leave arcs, in widths of the footprint and tolerances; the error is about a fifth of it
 BLOCKS = (8, 2, 0)  # the faces are made for squares of so many pixels, aligned on the screen; 0: for the footprint
+BOWED_MARGIN = 0.1  # of a domain over a curved base, on either side: rays are straightened again once it is there
 FEW = (16, 48, 2048)  # while no more pieces than this are near
 
 
@@ -54,12 +57,12 @@ HELD, MADE, FULL = 0, 1, 2
 @leaf
 def surround(
     pattern: Pattern, frame: np.void, footprint: np.void, flat: bool, camera: Camera, lights: NDArray[np.void],
-    tolerance: float, most: int, local: Local,
+    tolerance: float, most: int, source: Floats, local: Local,
 ) -> tuple[int, View]:  # fmt: skip
     """See to it that the faces hold all that a footprint needs: HELD as they were, MADE anew, or FULL, where that takes
     more than `most` strips, or is more than there is room for. The view is that of the square which they are made for.
 
-    flat: its frame is that of all footprints.
+    flat: its frame is that of all footprints. source: (lights + 1, 4) where straight rays come from (`straighten`).
     """
     square, at = local.square[0], local.at
     view = view_of(footprint, frame, camera)
@@ -78,16 +81,16 @@ def surround(
             square.x, square.y, square.size = x * side, y * side, side
             if is_grazing(square, frame, camera):
                 continue
-            view = view_of(square, frame, camera)
         else:
             square.x, square.y, square.size = footprint.x, footprint.y, footprint.size
-            view = view_of(square, frame, camera)
+        view = view_of(square, frame, camera)
+        straighten(pattern, frame, view, lights, source)
         for j in range(len(BLOCKS)):
             if at[j, 2] == 1.0:
                 at[j, 0] = math.inf
-        aim(pattern, frame, view, lights, local.domain)
+        aim(view, source, local.domain)
         size = thinnest(view, 1.0 / max(side, 1))
-        finite = spread(pattern, frame, view, lights, local.domain)
+        finite = spread(pattern, view, source, BOWED_MARGIN if is_curved(frame) else 0.0, local.domain)
         if finite and make(pattern, size, FEW[k], tolerance, most, local):
             at[k, 2] = 1.0
             return MADE, view

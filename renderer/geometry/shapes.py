@@ -276,7 +276,7 @@ def fill_frame(
 
 @leaf
 def bend(obj: np.void, triangles: Triangles, hit: np.void, frame: np.void) -> None:
-    """Fill `frame.form` and `lean`. The form is minus the normal part of the surface's second derivatives: how its
+    """Fill `frame.form` and `drift`. The form is minus the normal part of the surface's second derivatives: how its
     normal turns.
 
     dN/dp . dP/dp and so on. On spheres the normal turns as the place does, by 1 / radius; on cylinders around the axis
@@ -306,11 +306,18 @@ def bend(obj: np.void, triangles: Triangles, hit: np.void, frame: np.void) -> No
         f[0] += x[i, 0] * x[i, 0] / over
         f[1] += x[i, 0] * x[i, 1] / over
         f[2] += x[i, 1] * x[i, 1] / over
-    if obj.shape == SPHERE:  # sigma goes with the root of the latitude's cosine
-        cosine = math.sqrt(x[0, 0] * x[0, 0] + x[1, 0] * x[1, 0] + x[2, 0] * x[2, 0])
-        cosine *= obj.mapping[0] / (2.0 * math.pi * obj.size[0])
-        if cosine > 0.0:
-            frame.lean = 0.5 * sigma / obj.size[0] * math.sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine
+    if obj.shape == SPHERE:  # the length of dP/dp goes with the latitude's cosine, sigma with its root
+        sine = up = square = 0.0
+        for i in range(3):
+            sine += (frame.origin[i] - obj.translation[i]) * along[i] / obj.size[0]
+            up += x[i, 1] * along[i] / obj.size[0]
+            square += x[i, 0] * x[i, 0] / (obj.size[0] * obj.size[0])
+        cosine = math.sqrt(max(1.0 - sine * sine, 0.0))
+        if cosine > 0.0 and up != 0.0:
+            rate = up / cosine  # of latitude along q
+            frame.drift[0] = square * sine / (cosine * rate)
+            frame.drift[1] = -rate * sine / cosine
+            frame.drift[2] = -0.5 * rate * sine / cosine
     if obj.shape == CYLINDER:
         p = x[0, 0] * along[0] + x[1, 0] * along[1] + x[2, 0] * along[2]
         q = x[0, 1] * along[0] + x[1, 1] * along[1] + x[2, 1] * along[2]
@@ -382,7 +389,7 @@ def frames_at(
             n = (-n[0], -n[1], -n[2])
             frame.grooved = 0
         fill_frame(frame, p, a, b, n, origin)
-        frame.form[:], frame.lean = 0.0, 0.0
+        frame.form[:], frame.drift[:] = 0.0, 0.0
         if frame.grooved == 1 or (bent and not turned and not (hit.face == 1 and obj.shape == CYLINDER)):
             bend(obj, triangles, hit, frame)
 

@@ -12,15 +12,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.curve import eye_over, is_curved, light_over, turned
+from renderer.geometry.curve import applied, is_curved, turned
 from renderer.geometry.faces import FACES, Faces
+from renderer.geometry.graze import graze
 from renderer.geometry.local import FULL, MADE, Local, surround
 from renderer.geometry.polygon import CORNERS, Counts
 from renderer.geometry.query import Nearby
 from renderer.geometry.solid import Meeting, normal_of
-from renderer.geometry.view import View
+from renderer.geometry.straight import straighten_between
+from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import leaf
-from renderer.shading import ambient, lit_by, normal_to_world, to_world, unit
+from renderer.shading import ambient, light_to_pattern, lit_by, normal_to_world, to_world, unit
 from renderer.tables import SCALE_CONSTANT, Camera, Floats, Lighting, Pattern
 
 HALVES = 262144  # half-planes of what hides or shades
@@ -37,6 +39,11 @@ class Seen(NamedTuple):
     ray: Floats  # (3, 3) the ray's direction through (x, y): ray (x, y, 1)
     back: Floats  # (3, 3) its inverse
     source: Floats  # (sources, 4) D_p, D_q, D_w, h
+    least: Floats  # (sources, 4) the lights, as low as any straight rays stand for them
+    own: Floats  # (lights, 4) the lights where they are, over a curved base
+    between: Floats  # (4,) and for two faces
+    place: Floats  # (3,) a point that is seen of the face looked at
+    pairs: Counts  # (1,) 1: over a curved base, where each two faces have a light of their own (`graze`)
     corner: Floats  # (FACES, CORNERS, 3) on the screen, homogeneous
     box: Floats  # (FACES, 4) on the screen: x0, y0, x1, y1
     near: Floats  # (FACES, 3) one over the distance of a face's plane along the ray
@@ -56,7 +63,8 @@ class Seen(NamedTuple):
 def seen_of(lights: int) -> Seen:
     n = lights + 1
     return Seen(
-        np.zeros(1, np.int64), np.empty((3, 3)), np.empty((3, 3)), np.empty((n, 4)), np.empty((FACES, CORNERS, 3)),
+        np.zeros(1, np.int64), np.empty((3, 3)), np.empty((3, 3)), np.empty((n, 4)), np.empty((n, 4)),
+        np.empty((n, 4)), np.empty(4), np.empty(3), np.zeros(1, np.int64), np.empty((FACES, CORNERS, 3)),
         np.empty((FACES, 4)), np.empty((FACES, 3)), np.empty((n, FACES)), np.empty((n, FACES), np.int64),
         np.zeros(n, np.int64), np.empty((n, FACES, 4)), np.empty((n, FACES), np.int64), np.zeros(n, np.int64),
         np.full((n, FACES, 2), -1, np.int64), np.empty((HALVES, 4)),
@@ -73,8 +81,10 @@ def see(
 
     flat: its frame is that of all footprints.
     """
-    held, view = surround(pattern, frame, footprint, flat, camera, lights, tolerance, most, local)
-    if held == MADE and not look(pattern, frame, view, local.square[0], lights, local.faces, seen):
+    held, view = surround(pattern, frame, footprint, flat, camera, lights, tolerance, most, seen.source, local)
+    if held == MADE:
+        lower(view.p, view.q, frame, lights, seen)
+    if held == MADE and not look(view, local.square[0], lights, local.faces, seen):
         return FULL
     if held != FULL:
         draw_near(footprint, seen)
@@ -82,15 +92,43 @@ def see(
 
 
 @leaf
-def look(
-    pattern: Pattern, frame: np.void, view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen
-) -> bool:
-    """See the faces from a footprint's eye: fill `seen`. False where the eye is on the plane.
+def see_again(
+    low: float, high: float, top: float, x: float, y: float, across: float, pattern: Pattern, frame: np.void,
+    footprint: np.void, camera: Camera, lights: NDArray[np.void], local: Local, seen: Seen,
+) -> bool:  # fmt: skip
+    """See the faces anew, over a curved base, from what a first look has found: False as `look`.
 
-    Over a curved base the eye and the lights stand as high as makes up for it.
+    low, high: all that is seen lies between. top: the highest there is. x, y: about where what is deep is seen, in the
+    footprint's square. across: the angle of the way across grooves, most of them.
     """
+    view = view_of(footprint, frame, camera)
+    p, q = on_plane(view, x, y)
+    view = straighten_between(low, high, top, p, q, across, pattern, frame, view, lights, seen.source)
+    eye = seen.source[len(lights)]
+    lower(view.p + low * (eye[0] - view.p) / eye[2], view.q + low * (eye[1] - view.q) / eye[2], frame, lights, seen)
+    if not look(view, local.square[0], lights, local.faces, seen):
+        return False
+    draw_near(footprint, seen)
+    return True
+
+
+@leaf
+def lower(p: float, q: float, frame: np.void, lights: NDArray[np.void], seen: Seen) -> None:
+    """Fill `seen.own` and `seen.least` about a place on the plane."""
+    seen.pairs[0] = is_curved(frame)
+    seen.least[:] = seen.source
+    u, v = applied(frame, p - frame.pq[0], q - frame.pq[1])
+    for l in range(len(lights)):
+        d, own, least = light_to_pattern(frame, lights[l]), seen.own[l], seen.least[l]
+        own[0], own[1], own[2], own[3] = d[0], d[1], d[2], d[3]
+        least[2] = min(least[2], d[2] + u * (d[0] - d[3] * p) + v * (d[1] - d[3] * q))
+
+
+@leaf
+def look(view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen) -> bool:
+    """See the faces from a footprint's `seen.source`: fill the rest of `seen`. False where the eye is on the plane."""
     ray, back = seen.ray, seen.back
-    d0, d1, d2 = frame.eye[0], frame.eye[1], eye_over(pattern.height, pattern.depth, pattern.width, frame)
+    d0, d1, d2 = seen.source[len(lights), 0], seen.source[len(lights), 1], seen.source[len(lights), 2]
     # towards the point (P / W, Q / W, 0) of the plane, W < 0 (view), from the footprint's square to pixels
     for k in range(3):
         if k == 0:
@@ -116,11 +154,6 @@ def look(
     back[1, 2] = (ray[0, 2] * ray[1, 0] - ray[0, 0] * ray[1, 2]) / det
     back[2, 2] = (ray[0, 0] * ray[1, 1] - ray[0, 1] * ray[1, 0]) / det
     n, eye = faces.made[0], len(lights)
-    for l in range(eye):
-        d = light_over(pattern.height, pattern.width, frame, lights[l], view.p, view.q, -pattern.depth, pattern.height)
-        for k in range(4):
-            seen.source[l, k] = d[k]
-    seen.source[eye, 0], seen.source[eye, 1], seen.source[eye, 2], seen.source[eye, 3] = d0, d1, d2, 1.0
     seen.made[0] = 0
     for s in range(eye + 1):
         count = 0
@@ -157,7 +190,7 @@ def look(
                 corner[k] = back[k, 0] * x0 + back[k, 1] * x1 + back[k, 2] * x2
             widen(box, corner[0], corner[1], corner[2])
     for s in range(eye + 1):
-        source = seen.source[s]
+        source = seen.least[s]
         for i in range(seen.aways[s]):
             j = seen.away[s, i]
             cover = seen.cover[s, i]
@@ -215,11 +248,20 @@ def draw_near(footprint: np.void, seen: Seen) -> None:
 @leaf
 def halves_of(s: int, j: int, faces: Faces, seen: Seen) -> bool:
     """Make the half-planes of what face j keeps from source s: in front of it, within its edges seen from there."""
-    count, source, ray = faces.corners[j], seen.source[s], seen.ray
-    eye = seen.source[len(seen.source) - 1]
     first = seen.made[0]
-    if first + count + 1 > HALVES:
+    if first + faces.corners[j] + 1 > HALVES:
         return False
+    count = halves_from(seen.source[s], j, first, faces, seen)
+    seen.half[s, j, 0], seen.half[s, j, 1] = first, count
+    seen.made[0] = first + count
+    return True
+
+
+@leaf
+def halves_from(source: Floats, j: int, first: int, faces: Faces, seen: Seen) -> int:
+    """Write to `seen.halves`, from `first` on, the half-planes of what face j keeps from a source: how many."""
+    count, ray = faces.corners[j], seen.ray
+    eye = seen.source[len(seen.source) - 1]
     n = first
     plane = faces.plane[j]
     for k in range(3):
@@ -240,17 +282,17 @@ def halves_of(s: int, j: int, faces: Faces, seen: Seen) -> bool:
             seen.halves[n, k] = a0 * ray[0, k] + a1 * ray[1, k] + a2 * ray[2, k]
         seen.halves[n, 3] = a0 * (eye[0] - a[0]) + a1 * (eye[1] - a[1]) + a2 * (eye[2] - a[2])
         n += 1
-    seen.half[s, j, 0], seen.half[s, j, 1] = first, n - first
-    seen.made[0] = n
-    return True
+    return n - first
 
 
 @leaf
 def may_hide(s: int, f: int, b: int, faces: Faces, seen: Seen) -> bool:
     """Whether face b may stand between face f and source s, by their boxes."""
-    one, two, source = faces.box[f], faces.box[b], seen.source[s]
+    one, two, source = faces.box[f], faces.box[b], seen.least[s]
     if two[5] <= one[2]:
         return False
+    if source[2] <= 0.0:
+        return True
     if source[3] == 0.0:
         rise = (two[5] - one[2]) / source[2]
         for k in range(2):
@@ -283,15 +325,24 @@ def is_before(f: int, b: int, faces: Faces) -> bool:
 
 
 @leaf
-def hidden_by(b: int, s: int, f: int, footprint: np.void, faces: Faces, seen: Seen, planes: Floats) -> int:
+def hidden_by(
+    b: int, s: int, f: int, footprint: np.void, frame: np.void, faces: Faces, seen: Seen, planes: Floats
+) -> int:
     """Write the half-planes of what face b keeps from source s of face f, in the footprint's square, 0 to 1, to
     `planes` (CORNERS, 3): how many; 0 where it keeps nothing. Negative where there is no room."""
     if b == f or not may_hide(s, f, b, faces, seen) or not is_before(f, b, faces):
         return 0
-    if seen.half[s, b, 0] < 0 and not halves_of(s, b, faces, seen):
-        return -1
     size, near = footprint.size, seen.near[f]
-    first, count = seen.half[s, b, 0], seen.half[s, b, 1]
+    if seen.pairs[0] == 1 and s < len(seen.source) - 1:
+        first = seen.made[0]
+        if first + faces.corners[b] + 1 > HALVES:
+            return -1
+        graze(frame, seen.own[s], seen.place, f, b, faces, seen.between)
+        count = halves_from(seen.between, b, first, faces, seen)
+    else:
+        if seen.half[s, b, 0] < 0 and not halves_of(s, b, faces, seen):
+            return -1
+        first, count = seen.half[s, b, 0], seen.half[s, b, 1]
     for i in range(count):
         h = seen.halves[first + i]
         x, y = h[0] + h[3] * near[0], h[1] + h[3] * near[1]
@@ -309,6 +360,16 @@ def may_light(l: int, f: int, footprint: np.void, seen: Seen) -> bool:
 
 
 @leaf
+def place_on(f: int, footprint: np.void, u: float, v: float, seen: Seen) -> None:
+    """Write to `seen.place` the point of face f that is seen at the point (u, v) of the footprint's square."""
+    x, y, ray = footprint.x + footprint.size * u, footprint.y + footprint.size * v, seen.ray
+    near = seen.near[f, 0] * x + seen.near[f, 1] * y + seen.near[f, 2]
+    for k in range(3):
+        way = ray[k, 0] * x + ray[k, 1] * y + ray[k, 2]
+        seen.place[k] = seen.source[len(seen.source) - 1, k] + way / near
+
+
+@leaf
 def colour_at(
     f: int, light: int, x: float, y: float, pattern: Pattern, frame: np.void, lighting: Lighting,
     material: np.void, albedo: Floats, bent: bool, found: Nearby, faces: Faces, seen: Seen,
@@ -316,10 +377,10 @@ def colour_at(
     """The radiance that face f sends to the eye through the screen's point (x, y): of one light; of sky and glow."""
     near = seen.near[f, 0] * x + seen.near[f, 1] * y + seen.near[f, 2]
     t = 1.0 / near
-    ray = seen.ray
-    p = frame.eye[0] + t * (ray[0, 0] * x + ray[0, 1] * y + ray[0, 2])
-    q = frame.eye[1] + t * (ray[1, 0] * x + ray[1, 1] * y + ray[1, 2])
-    w = seen.source[len(seen.source) - 1, 2] + t * (ray[2, 0] * x + ray[2, 1] * y + ray[2, 2])
+    ray, origin = seen.ray, seen.source[len(seen.source) - 1]
+    p = origin[0] + t * (ray[0, 0] * x + ray[0, 1] * y + ray[0, 2])
+    q = origin[1] + t * (ray[1, 0] * x + ray[1, 1] * y + ray[1, 2])
+    w = origin[2] + t * (ray[2, 0] * x + ray[2, 1] * y + ray[2, 2])
     plane = faces.plane[f]
     n0, n1, n2 = plane[0], plane[1], plane[2]
     if bent:

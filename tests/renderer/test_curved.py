@@ -159,23 +159,23 @@ def test_the_form_is_how_far_the_map_falls_below_its_tangent_plane(shape: int) -
 
 @pytest.mark.parametrize("shape", [SPHERE, CYLINDER])
 def test_points_over_the_base_lie_where_their_height_says(shape: int) -> None:
-    """A point at the height w is sigma w from the round surface: what is left is of third order, not of second."""
+    """As the map of the ground truth has them: what is left is of third order, not of second."""
     size = np.array([0.7, 0.0]) if shape == SPHERE else np.array([0.7, 1.9])
     frame = frame_at(shape, size, np.array([5.0, 3.0, -1.0, 0.25]), 0.3, 0.62)
-    sigma = float(np.linalg.norm(frame["axes"][:, 2]))
+    base = body._NO_BASE._replace(shape=shape, size=size, mapping=np.array([5.0, 3.0, -1.0, 0.25]))
 
-    def off(h: float, point: tuple[float, float, float]) -> float:
+    def off(place: tuple[float, float, float], point: tuple[float, float, float]) -> float:
         at = frame["origin"] + frame["axes"] @ (np.array(point) - [*frame["pq"], 0.0]) - MOVED
-        own = some_turn().T @ at
-        return abs(float(np.linalg.norm(own if shape == SPHERE else own[:2])) - 0.7 - sigma * h)
+        carried = body.carry(base, np.array([[place]]), np.zeros(1, np.int32))[0, 0]
+        return float(np.linalg.norm(some_turn().T @ at - carried))
 
     bent = alone(curve.bent)
     for angle in np.linspace(0.0, 6.0, 7):
         left = []
         for h in (0.02, 0.01):
             p, q, w = frame["pq"][0] + 2.0 * h * math.cos(angle), frame["pq"][1] + 2.0 * h * math.sin(angle), h
-            left.append(off(h, bent(frame, p, q, w)))
-            straight = off(h, (p, q, w))
+            left.append(off((p, q, w), bent(frame, p, q, w)))
+            straight = off((p, q, w), (p, q, w))
             assert left[-1] < max(0.2 * straight, 2e-6)
         assert left[1] < max(left[0] / 6.0, 1e-9)
 
@@ -218,16 +218,17 @@ def test_shadows_of_ridges_follow_the_base(shape: str, low: float, around: float
 
 @pytest.mark.parametrize("shape", ["sphere", "cylinder"])
 def test_shadows_in_grooves_follow_the_base(shape: str, radiance: Radiance) -> None:
-    """Grooves of 1/20 of the radius; measured, to 13 % and 24 %."""
-    off, flat = errors(scene(shape, [row(0.2, -0.05, 15)], 15.0), shape, "line", radiance)
-    assert flat > 0.005
-    assert off < 0.3 * flat
+    """Grooves of 1/20 of the radius; measured, to 13 % and 24 % by `line`, to 12 % and 10 % by `area`."""
+    for method, worth in (("line", 0.3), ("area", 0.15)):
+        off, flat = errors(scene(shape, [row(0.2, -0.05, 15)], 15.0), shape, method, radiance)
+        assert flat > 0.005
+        assert off < worth * flat
 
 
 @pytest.mark.parametrize("shape", ["sphere", "cylinder"])
-@pytest.mark.parametrize(("method", "worth"), [("csg", 0.12), ("area", 0.6), ("auto", 0.4)])
+@pytest.mark.parametrize(("method", "worth"), [("csg", 0.12), ("area", 0.4), ("auto", 0.4)])
 def test_crossing_ridges_in_low_light(method: str, worth: float, shape: str, radiance: Radiance) -> None:
-    """The tangent plane's error falls to 41 and 51 % (`area`), 34 % (`auto`): measured."""
+    """The tangent plane's error falls to 32 % on spheres, to 10 % on cylinders (`area` and `auto`): measured."""
     grooves = [row(0.1, 0.025, 30), row(0.1, 0.025, 20, across=True)]
     off, flat = errors(scene(shape, grooves, 12.0), shape, method, radiance)
     assert flat > 0.01
