@@ -43,7 +43,7 @@ from renderer.geometry.sight import (
     slot_of,
     tinge,
 )
-from renderer.geometry.straight import left_out
+from renderer.geometry.straight import STRAIGHT, left_out, straightened
 from renderer.geometry.view import view_of
 from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.shading import are_distant, to_world, white
@@ -287,7 +287,8 @@ def area_sampling(
         )  # fmt: skip
         bowed = 0.0
         if room and is_curved(frame):
-            if left_out(frame, max(-total[LOW], total[TOP]), 0.0) > rough:
+            least = STRAIGHT * straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
+            if max(least, left_out(frame, max(-total[LOW], total[TOP]), 0.0)) > rough:
                 continue
             red, green, blue = total[RED], total[GREEN], total[BLUE]
             room = see_again(
@@ -299,7 +300,7 @@ def area_sampling(
                 local, seen, parts,
             )  # fmt: skip
             apart = abs(total[RED] - red) + abs(total[GREEN] - green) + abs(total[BLUE] - blue)
-            bowed = left_out(frame, max(-total[LOW], total[TOP]), apart / (3.0 * bright))
+            bowed = max(least, left_out(frame, max(-total[LOW], total[TOP]), apart / (3.0 * bright)))
             if bowed > rough:
                 continue
         whole = total[WHOLE]

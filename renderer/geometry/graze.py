@@ -22,7 +22,8 @@ def graze(frame: np.void, light: Floats, place: Floats, f: int, b: int, faces: F
 
     light: (4,) where it is. place: (3,) a point of face f. All is in the vertical plane through it and the light; there
     x is the way to the light from the place, w the height over it. A ray rises by slope s + 1/2 bend s^2. It passes
-    over b at its point (x, w) that keeps most from the place, and lands s before, where f rises by `steep` x.
+    over b at its point (x, w) that keeps most from the place, and lands s before, where f rises by `steep` x; next to
+    the place, as where light grazes f it lands anywhere.
     """
     for k in range(4):
         out[k] = light[k]
@@ -60,7 +61,7 @@ def graze(frame: np.void, light: Floats, place: Floats, f: int, b: int, faces: F
         first, rise = slope + bend * x - steep, w - steep * x
         square = first * first - 2.0 * bend * rise
         if first > 0.0 and square >= 0.0:
-            s = max(2.0 * rise / (first + math.sqrt(square)), 0.0)
+            s = min(max(2.0 * rise / (first + math.sqrt(square)), 0.0), 2.0 * s)
     d0 = d1 = d2 = 0.0
     for k in range(2):
         # from (x - s) to x straight in space is, between their middles, straight in pattern space so:
@@ -81,7 +82,7 @@ def graze(frame: np.void, light: Floats, place: Floats, f: int, b: int, faces: F
         )
         rate = d2 / max(d0 * px + d1 * py, 1e-300)
         if k == 0 and not sheer and rate > steep:
-            s = max((w - steep * x) / (rate - steep), 0.0)
+            s = min(max((w - steep * x) / (rate - steep), 0.0), 2.0 * max(x, 0.0))
     out[0], out[1], out[2] = d0, d1, d2
     if light[3] > 0.0:
         left = 1.0 - s / max(far - x + s, 1e-300)

@@ -13,9 +13,8 @@ from renderer.kernel import leaf
 from renderer.shading import light_to_pattern
 from renderer.tables import Floats, Pattern
 
-THIRD = (
-    0.05  # the error that is left, in parts of the cube of the angle by which the base turns within a groove's depth
-)
+THIRD = 0.05  # the error that is left, in parts of the cube of the angle by which a groove's depth turns the base
+STRAIGHT = 0.1  # ... in parts of what slopes are changed by, the most: more than there is in most places
 AGAIN = 3.0  # ... and by this times that angle more than by what a second look changes (both measured)
 
 
