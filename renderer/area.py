@@ -212,11 +212,11 @@ def add_up(
                 share = area(part, corners)
                 if light < 0:
                     whole += share
+                if light < 0 and seen.pairs[0] == 1:
+                    s, t = centroid(part, corners, share)
                     if share > largest:
-                        largest = share
-                        u, v = centroid(part, corners, share)
+                        largest, u, v = share, s, t
                     if share > SLIVER:
-                        s, t = centroid(part, corners, share)
                         place_on(f, footprint, s, t, seen)
                         deep = share * abs(seen.place[2])
                         weight, aside, down = weight + deep, aside + deep * (s - 0.5), down + deep * (t - 0.5)
@@ -277,6 +277,11 @@ def area_sampling(
         frame = frames[footprint.frame]
         method[index] = NOT_MINE
         view = view_of(footprint, frame, camera)
+        least = 0.0
+        if is_curved(frame):
+            least = STRAIGHT * straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
+            if least > rough:
+                continue
         if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:
             continue
         bright = white(lighting, to_world(frame, view.p, view.q, 0.0))
@@ -287,8 +292,7 @@ def area_sampling(
         )  # fmt: skip
         bowed = 0.0
         if room and is_curved(frame):
-            least = STRAIGHT * straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
-            if max(least, left_out(frame, max(-total[LOW], total[TOP]), 0.0)) > rough:
+            if left_out(frame, max(-total[LOW], total[TOP]), 0.0) > rough:
                 continue
             red, green, blue = total[RED], total[GREEN], total[BLUE]
             room = see_again(
