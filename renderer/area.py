@@ -43,7 +43,7 @@ from renderer.geometry.sight import (
     slot_of,
     tinge,
 )
-from renderer.geometry.straight import STRAIGHT, left_out, straightened
+from renderer.geometry.straight import left_out
 from renderer.geometry.view import view_of
 from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.shading import are_distant, to_world, white
@@ -277,11 +277,6 @@ def area_sampling(
         frame = frames[footprint.frame]
         method[index] = NOT_MINE
         view = view_of(footprint, frame, camera)
-        least = 0.0
-        if is_curved(frame):
-            least = STRAIGHT * straightened(pattern, frame, view.p, view.q, footprint.blocked, lights)
-            if least > rough:
-                continue
         if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:
             continue
         bright = white(lighting, to_world(frame, view.p, view.q, 0.0))
@@ -292,7 +287,8 @@ def area_sampling(
         )  # fmt: skip
         bowed = 0.0
         if room and is_curved(frame):
-            if left_out(frame, max(-total[LOW], total[TOP]), 0.0) > rough:
+            bowed = left_out(frame, view, total[LOW], total[HIGH], total[TOP], 0.0, footprint.blocked, lights)
+            if not bowed <= rough:
                 continue
             red, green, blue = total[RED], total[GREEN], total[BLUE]
             room = see_again(
@@ -304,8 +300,10 @@ def area_sampling(
                 local, seen, parts,
             )  # fmt: skip
             apart = abs(total[RED] - red) + abs(total[GREEN] - green) + abs(total[BLUE] - blue)
-            bowed = max(least, left_out(frame, max(-total[LOW], total[TOP]), apart / (3.0 * bright)))
-            if bowed > rough:
+            bowed = left_out(
+                frame, view, total[LOW], total[HIGH], total[TOP], apart / (3.0 * bright), footprint.blocked, lights
+            )
+            if not bowed <= rough:
                 continue
         whole = total[WHOLE]
         if not room or not abs(whole - 1.0) <= tolerance * (CHORDED if total[CHORDS] > 0.0 else SUMMED):

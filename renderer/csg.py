@@ -18,11 +18,11 @@ from renderer.geometry.curve import is_curved, turned, unsure
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import drawn, jitter, seed_of
 from renderer.geometry.rays import follow
-from renderer.geometry.shell import is_round, is_shaded, placed, raised, seen_from
+from renderer.geometry.shell import STRAY, is_round, is_shaded, placed, raised, seen_from
 from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_ray, thin_of
 from renderer.geometry.spans import END, PLANE, events
 from renderer.geometry.straight import light_over, sight_over, straightened
-from renderer.geometry.view import on_plane, through_screen, view_of
+from renderer.geometry.view import on_plane, thinnest, through_screen, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
 from renderer.scattering import scatter
 from renderer.shading import (
@@ -45,8 +45,12 @@ FIRST = 8  # else or then takes FIRST * FIRST,
 MOST = 64  # and at most MOST * MOST; a part of a pixel fewer
 GRAINY = 0.01  # the tolerance, at least, where a curved base makes rays bend much: many footprints at low light
 BENT = 0.3  # ... by this part of its slope
+UNSEEN = 0.1  # of white over n: what the parts that no sample has met may be
 STRATIFIED = 0.72  # of what sets neighbours apart is a stratum's own error: an edge between two counts (measured)
 SURE = 0.5  # how much of the tolerance the standard error may take
+EDGE = 0.2  # twice a quarter over the square root of six: the error of a pixel's samples, in parts of n^-3/4
+BOWED = 0.15  # so far chords may be from rays on round shapes, times the tolerance, in pixels' least widths
+SHADED = 4.0  # ... and those of shadows this times as far
 
 
 @kernel
@@ -83,6 +87,11 @@ def csg(
         obj = objects[frame.object]
         view = view_of(footprint, frame, camera)
         curved, rounded = is_curved(frame), is_round(obj, frame) or footprint.open == BESIDE
+        stray = strayed = STRAY * (high - low)  # of sight and of light
+        fine = tolerance if tolerance > 0.0 else EDGE * math.pow(samples, -0.75)
+        near = BOWED * fine * thinnest(view, 1.0) / footprint.size if rounded else math.inf
+        if near < stray:
+            stray, strayed = near, min(strayed, SHADED * near)
         dw = frame.eye[2]
         top = min(high + thin, dw * (1.0 - 1e-9))
 
@@ -128,7 +137,7 @@ def csg(
         if bounces > 0:  # rays from facet to facet take their time
             most = max(across, begin)
         corners = 0
-        target = 0.0
+        target = bright = 0.0
         if tolerance > 0.0:
             across = down = begin
             if 0 <= shared <= FEW and bounces == 0:
@@ -137,7 +146,8 @@ def csg(
             bends = curved and not rounded
             if bends and straightened(pattern, frame, view.p, view.q, footprint.blocked, lights) > BENT:
                 target = max(tolerance, GRAINY)
-            target *= SURE / ease * white(lighting, to_world(frame, view.p, view.q, 0.0))
+            bright = white(lighting, to_world(frame, view.p, view.q, 0.0))
+            target *= SURE / ease * bright
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0
         taken = looked = 0
@@ -162,7 +172,7 @@ def csg(
                         through_screen(camera, footprint.x + u * footprint.size, footprint.y + v * footprint.size)
                     )
                     passed = seen_from(
-                        pattern, found, spans, obj, (eye[0], eye[1], eye[2]), sight, footprint.open == BESIDE
+                        pattern, found, spans, obj, (eye[0], eye[1], eye[2]), sight, footprint.open == BESIDE, stray
                     )
                     m, x, y, at, gp, gq = passed.meeting, passed.x, passed.y, passed.w, passed.gp, passed.gq
                 else:
@@ -222,7 +232,7 @@ def csg(
                     if colour[0] <= 0.0 and colour[1] <= 0.0 and colour[2] <= 0.0:
                         continue
                     if rounded:
-                        if is_shaded(pattern, found, spans, obj, lights[l], sx, sy, sw):
+                        if is_shaded(pattern, found, spans, obj, lights[l], sx, sy, sw, strayed):
                             continue
                     else:
                         d = light_to_pattern(frame, lights[l])
@@ -291,6 +301,8 @@ def csg(
             if corners == 0 or alike:
                 pairs = across * (down - 1) + down * (across - 1)
                 error = STRATIFIED * math.sqrt(unlike / (2.0 * pairs) / taken)
+                if corners == 0:
+                    error = math.hypot(error, UNSEEN * bright / taken)
                 if error <= target or across >= most:
                     break
             if corners > 0:

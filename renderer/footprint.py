@@ -21,8 +21,8 @@ from renderer.tables import BESIDE, CYLINDER, FOOTPRINT, FRAME, HIT, MESH, RECTA
 LEVELS = 2, 7  # splits of a pixel on an edge, by tolerance
 CROWD = 4, 4  # but after the first number of splits, only while an edge meets no more than the second of parts a row
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
-TURN = 0.25  # ... nor by more than 1 - cosine = TURN * tolerance (measured): a tangent plane errs as that does
-TURNS = 2  # splits for that alone: a mesh may turn in every triangle, however small
+TURN = 0.25, 2  # ... nor by more than 1 - cosine = TURN * tolerance (measured); up to so many splits for that alone
+MESH_TURN = 0.06, 3  # ... on meshes, which turn in every triangle, however small
 CLOSE = 1e-3  # of a radius: no other object stands so near
 WITHIN = 1.0 - 1e-6  # of a cylinder's height: a place at its rim counts as one of its side
 OPEN = 1.5  # times the depth of the grooves: a footprint's corners may be seen at less slope than its centre
@@ -131,8 +131,12 @@ def footprints(
         mask = shapes.blocked(camera.origin, middle_rays, middle, lights)
         smooth = last
         if level < finest:
-            turn = TURN * tolerance * 2**level if level < TURNS else 1.0  # an edge meets 2^level of 4^level parts
-            smooth |= touching(middle, mask, corners, corner_mask, around, max(SMOOTH_COSINE, 1.0 - turn))
+            turn = np.where(
+                (middle["object"] >= 0) & (shapes.objects["shape"][middle["object"]] == MESH),
+                *(part * tolerance * 2**level if level < most else 1.0 for part, most in (MESH_TURN, TURN)),
+            )  # an edge meets 2^level of 4^level parts
+            cosine = np.maximum(SMOOTH_COSINE, 1.0 - turn)
+            smooth |= touching(middle, mask, corners, corner_mask, around, cosine)
         eyes, beside = np.broadcast_to(camera.origin, middle_rays.shape), np.zeros(len(middle), np.bool_)
         if level == 0 and shapes.shells is not None:
             outer = shapes.shell_hits(camera.origin, corner_rays)[around]

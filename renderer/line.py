@@ -29,7 +29,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.curve import bow_of, is_curved, sink, turned, unsure
+from renderer.geometry.curve import bow_of, is_curved, sink, turned
 from renderer.geometry.layout import (
     KNOWN,
     LEVEL,
@@ -54,6 +54,7 @@ from renderer.geometry.layout import (
 from renderer.geometry.reach import Reach
 from renderer.geometry.reflection import reflections
 from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, spans
+from renderer.geometry.straight import left_by_lines
 from renderer.geometry.strings import (
     APART,
     BEYOND,
@@ -309,8 +310,10 @@ def line(
             continue
         error = 0.0
         if curved and grooves > 0:
-            error = unsure(frame, max(r.wide_high - r.high, r.low - r.wide_low, pattern.width))
-        if strict and error > rough:
+            far = max(r.wide_high - r.high, r.low - r.wide_low, pattern.width)
+            deep = pattern.height + pattern.depth
+            error = left_by_lines(frame, view, far, r.length, deep, footprint.blocked, lights)
+        if strict and not error <= rough:
             continue
         method[index] = BASE
 

@@ -24,7 +24,7 @@ import schema
 from renderer import CACHE, body, bounce, film, relief, shading
 from renderer.area import area_sampling, in_blocks
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
-from renderer.csg import MOST, PROBE, csg
+from renderer.csg import EDGE, MOST, PROBE, csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
 from renderer.geometry.strips import STRIPS
@@ -38,7 +38,6 @@ from renderer.trace import Truth
 TILE = 64  # pixels
 RAYS = 1 << 16  # from one object to others, at a time
 ROUGH = 0.03  # the error that may be left on meshes' curved bases: next to the terminator light is wrong all over
-EDGE = 0.2  # twice a quarter over the square root of six
 FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")

@@ -30,7 +30,7 @@ NAMES = ("parallel", "tiles", "single", "vinyl", "hieroglyphs", "brushed", "scra
 TOLERANCES = (0.01, 0.003, 0.001)
 SHARE = 0.95
 SIZE = (32, 24)
-SAMPLES, PASSES = 4096, {"scratches": (2, 64)}  # of the reference, else two passes: scratches glint
+SAMPLES, PASSES = 16384, {"scratches": (2, 16)}  # of the reference, else (2, 8): scratches glint
 TRUTH = {"hieroglyphs": "geometry", "brushed": "geometry"}  # else `csg`, which on meshes errs where `auto` does
 LADDER = (16, 64, 256, 1024)  # samples of csg
 RUNS = 3
@@ -49,7 +49,7 @@ def measure() -> tuple[list[Line], dict[str, Any]]:
     detail: dict[str, Any] = {}
     for name in NAMES:
         print(f"  auto: {name} ...", flush=True)
-        found, detail[name] = _example(load(name), TRUTH.get(name, "csg"), PASSES.get(name, (2, 2)))
+        found, detail[name] = _example(load(name), TRUTH.get(name, "csg"), PASSES.get(name, (2, 8)))
         lines += [line._replace(what=f"auto, {name} {line.what}") for line in found]
     return lines, detail
 

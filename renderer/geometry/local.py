@@ -19,7 +19,7 @@ from renderer.geometry.query import Nearby, find, nearby
 from renderer.geometry.regions import BANDS, REMOVALS, Regions, regions_of, unite
 from renderer.geometry.straight import straighten
 from renderer.geometry.strips import Strips, divide, lay, overhangs, strips_of
-from renderer.geometry.view import GRAZING, View, on_plane, slope_at, view_of
+from renderer.geometry.view import GRAZING, View, slope_at, thinnest, view_of
 from renderer.kernel import fixed, leaf
 from renderer.tables import FOOTPRINT, SCALE_CONSTANT, Camera, Floats, Pattern
 
@@ -106,20 +106,6 @@ def is_grazing(square: np.void, frame: np.void, camera: Camera) -> bool:
     for k in range(4):
         most = max(most, slope_at(x + 2.0 * half * (k & 1), y + 2.0 * half * (k >> 1), frame, camera))
     return most > GRAZING * middle
-
-
-@leaf
-def thinnest(view: View, part: float) -> float:
-    """The least width, pattern units, of a square of this part of a view's sides, in its corners."""
-    least = math.inf
-    for k in range(4):
-        u, v = float(k & 1), float(k >> 1)
-        p0, q0 = on_plane(view, u, v)
-        p1, q1 = on_plane(view, u + part * (1.0 - 2.0 * u), v)
-        p2, q2 = on_plane(view, u, v + part * (1.0 - 2.0 * v))
-        long = max(math.hypot(p1 - p0, q1 - q0), math.hypot(p2 - p0, q2 - q0))
-        least = min(least, abs((p1 - p0) * (q2 - q0) - (p2 - p0) * (q1 - q0)) / long)
-    return least
 
 
 @leaf

@@ -11,7 +11,7 @@ from renderer.geometry.curve import bent, is_curved, turned
 from renderer.geometry.query import Nearby
 from renderer.geometry.random import drawn
 from renderer.geometry.shapes import local
-from renderer.geometry.shell import LEVEL, carried, is_round, is_shaded, pass_through, placed, raised
+from renderer.geometry.shell import LEVEL, STRAY, carried, is_round, is_shaded, pass_through, placed, raised
 from renderer.geometry.solid import (
     DOWN,
     OPEN,
@@ -76,6 +76,7 @@ def follow(
     lights = lighting.lights
     rounded = is_round(obj, frame)
     curved = not rounded and is_curved(frame)
+    stray = STRAY * (pattern.height + pattern.depth)
     red = green = blue = 0.0
     emerged = False
     x, y, w = start
@@ -84,7 +85,7 @@ def follow(
         if rounded:
             o = carried(obj, x, y, w)
             d = local(obj, way[0], way[1], way[2])
-            passed = pass_through(pattern, found, spans, obj, o, d, (x, y, w), 0.0, math.inf, within, False)
+            passed = pass_through(pattern, found, spans, obj, o, d, (x, y, w), 0.0, math.inf, within, False, stray)
             m, gp, gq, rises = passed.meeting, passed.gp, passed.gq, not passed.descends
             leaves = passed.leaves
         else:
@@ -151,7 +152,7 @@ def follow(
             if max(lit[0], lit[1], lit[2]) <= 0.0:
                 continue
             if rounded:
-                shaded = is_shaded(pattern, found, spans, obj, lights[l], x, y, w)
+                shaded = is_shaded(pattern, found, spans, obj, lights[l], x, y, w, stray)
             else:
                 light = light_to_pattern(frame, lights[l])
                 if light[2] <= 0.0:

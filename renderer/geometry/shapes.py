@@ -397,9 +397,10 @@ def frames_at(
 @kernel
 def touching(
     middle: NDArray[np.void], mask: NDArray[np.uint64], corners: NDArray[np.void], masks: NDArray[np.uint64],
-    around: NDArray[np.int64], cosine: float,
+    around: NDArray[np.int64], cosine: Floats,
 ) -> NDArray[np.bool_]:  # fmt: skip
-    """Whether each square's centre (n,) and corners hit one smooth surface in one light, or nothing at all.
+    """Whether each square's centre (n,) and corners hit one smooth surface in one light, or nothing at all; smooth up
+    to a `cosine` (n,) of what normals differ by.
 
     around: (4, n) rows of `corners` and `masks`.
     """
@@ -411,7 +412,7 @@ def touching(
             same = c.object == m.object and masks[around[k, i]] == mask[i]
             if same and m.object >= 0:
                 turn = m.normal[0] * c.normal[0] + m.normal[1] * c.normal[1] + m.normal[2] * c.normal[2]
-                same = turn > cosine
+                same = turn > cosine[i]
             if not same:
                 smooth[i] = False
                 break

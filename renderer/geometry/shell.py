@@ -1,4 +1,4 @@
-"""Rays through the grooves of a sphere or a cylinder, exactly but for STRAY of their height (more next to the poles).
+"""Rays through the grooves of a sphere or a cylinder, exactly but for as much as is asked for (more next to the poles).
 
 The solid over such a base is P(p, q) + w sigma N (DESIGN 1.2), which can be turned round in closed form: a place in the
 object's axes has its (p, q, w), and a ray is a curve in pattern space. Through the shell that the grooves fill it is
@@ -34,7 +34,7 @@ from renderer.kernel import callee, leaf
 from renderer.shading import unit
 from renderer.tables import CYLINDER, POINT, SPHERE, Pattern
 
-STRAY = 0.003  # of the grooves' height: so far a chord may be from its ray
+STRAY = 0.003  # of the grooves' height: so far a chord may be from its ray, the most
 LEVEL = (
     1e-3  # a ray's slope to the plane is taken for at least this: more level ones run over very many grooves to no end
 )
@@ -208,12 +208,13 @@ def left_at(
 @callee
 def pass_through(
     pattern: Pattern, found: Nearby, spans: Events, obj: np.void, o: Vector, d: Vector, here: Vector, begin: float,
-    end: float, within: bool, asks: bool,
+    end: float, within: bool, asks: bool, stray: float,
 ) -> Passage:  # fmt: skip
     """What the ray o + t d (the object's axes) meets from t = `begin` on, where it is in the shell, `here` in pattern
     space, to t = `end`.
 
-    within: it is inside the body. asks: whether it meets anything is all that matters.
+    within: it is inside the body. asks: whether it meets anything is all that matters. stray: how far chords may be
+    from it, pattern units.
     """
     t = begin
     m = moments(obj, o, d)
@@ -231,16 +232,17 @@ def pass_through(
     if begin < nearest < final:  # body, by more than rounding
         sinks = crossings(obj, m, -thin_of(pattern))[0]
     seam = -o[1] / d[1] if d[1] != 0.0 else math.nan  # where p begins again, or half a turn from there
-    bow = 8.0 * STRAY * (pattern.height + pattern.depth)
+    bow, least = 8.0 * stray, (final - begin) / CHORDS
     gp = gq = 0.0
     descends = True
-    for _ in range(CHORDS):
+    for _ in range(CHORDS + 4):  # it ends at three places more
         ring, cosine = obj.size[0], 1.0
         if obj.shape == SPHERE:  # nearer to the poles parallels are bent more, and grooves are smaller
             x = ahead(o, d, t)
             ring = max(math.hypot(x[0], x[1]), POLAR * obj.size[0])
             cosine = ring / obj.size[0]
         step = math.sqrt(bow * sigma_at(obj, cosine) * ring) / speed if speed > 0.0 else math.inf
+        step = max(step, least)
         until = t + step if t + 1.25 * step < final else final
         for stop in (nearest, sinks, seam):
             if t < stop < until:
@@ -269,7 +271,8 @@ def pass_through(
 
 @leaf
 def seen_from(
-    pattern: Pattern, found: Nearby, spans: Events, obj: np.void, eye: Vector, way: Vector, beside: bool
+    pattern: Pattern, found: Nearby, spans: Events, obj: np.void, eye: Vector, way: Vector, beside: bool,
+    stray: float,
 ) -> Passage:  # fmt: skip
     """What the ray from the eye along `way` (world) sees. Where it passes by at the outline, through grooves or over
     ridges, OPEN.
@@ -299,7 +302,7 @@ def seen_from(
             ground = meet(pattern, found, spans, -1, here[0], here[1], 0.0, 0.0, high, low, DOWN).w
             if here[2] < ground:
                 return Passage(Meeting(here[2], END, PLANE, BODY), here[0], here[1], here[2], 0.0, 0.0, True, False)
-        return pass_through(pattern, found, spans, obj, o, d, here, begin, math.inf, False, False)
+        return pass_through(pattern, found, spans, obj, o, d, here, begin, math.inf, False, False, stray)
     if math.isnan(bare):
         bare = -m[1] / m[0]
         x = ahead(o, d, bare)
@@ -307,7 +310,7 @@ def seen_from(
         o = (o[0] + inwards * x[0], o[1] + inwards * x[1], o[2] + (0.0 if obj.shape == CYLINDER else inwards * x[2]))
     begin = entered(pattern, obj, o, d, False, bare)
     here = chart(obj, ahead(o, d, begin))
-    passed = pass_through(pattern, found, spans, obj, o, d, here, begin, math.inf, False, False)
+    passed = pass_through(pattern, found, spans, obj, o, d, here, begin, math.inf, False, False, stray)
     if passed.meeting.w > -math.inf:
         return passed
     x = chart(obj, ahead(o, d, bare))
@@ -317,8 +320,9 @@ def seen_from(
 
 @leaf
 def is_shaded(
-    pattern: Pattern, found: Nearby, spans: Events, obj: np.void, light: np.void, x: float, y: float, w: float
-) -> bool:
+    pattern: Pattern, found: Nearby, spans: Events, obj: np.void, light: np.void, x: float, y: float, w: float,
+    stray: float,
+) -> bool:  # fmt: skip
     """Whether the grooves, or the body, keep a light from a point off the surface, pattern space."""
     v, end, o = light.vector, math.inf, carried(obj, x, y, w)
     if light.kind == POINT:
@@ -326,4 +330,4 @@ def is_shaded(
         d = (at[0] - o[0], at[1] - o[1], at[2] - o[2])
     else:
         d = local(obj, v[0], v[1], v[2])
-    return pass_through(pattern, found, spans, obj, o, d, (x, y, w), 0.0, end, False, True).meeting.w > -math.inf
+    return pass_through(pattern, found, spans, obj, o, d, (x, y, w), 0.0, end, False, True, stray).meeting.w > -math.inf

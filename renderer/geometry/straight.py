@@ -7,15 +7,16 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.curve import applied, drifting, is_curved, spreading
-from renderer.geometry.view import View
+from renderer.geometry.curve import applied, drifting, is_curved, spreading, unsure
+from renderer.geometry.view import View, on_plane
 from renderer.kernel import leaf
 from renderer.shading import light_to_pattern
 from renderer.tables import Floats, Pattern
 
 THIRD = 0.05  # the error that is left, in parts of the cube of the angle by which a groove's depth turns the base
-STRAIGHT = 0.1  # ... in parts of what slopes are changed by, the most: more than there is in most places
-AGAIN = 3.0  # ... and by this times that angle more than by what a second look changes (both measured)
+AGAIN = 3.0  # ... by this times that angle more than by what a second look changes
+LOW_LIGHT = 0.004  # ... in parts of how much the lowest light bends (all three measured)
+ACROSS, DRIFTED, LINED = 2.0, 0.25, 0.05  # of a cross-section: of `unsure`, of the change of scale, of that light
 
 
 @leaf
@@ -164,9 +165,73 @@ def straightened(
 
 
 @leaf
-def left_out(frame: np.void, high: float, apart: float) -> float:
-    """About the error of straight rays that stand for bent ones, relative to white, by what the second order leaves out
-    of points so high over the surface or deep under it. apart: what a second look at them changed."""
+def bends_of(frame: np.void, view: View, deep: float, blocked: np.uint64, lights: NDArray[np.void]) -> float:
+    """How much the light that bends most does so within grooves so `deep`: k deep / slope^2, with k the curvature along
+    its way. Where it is too low to come in at all there is none to bend.
+
+    It is large next to the terminator, where light from under the tangent plane runs along grooves from beyond it.
+    """
+    most = 0.0
+    for l in range(len(lights)):
+        if (blocked >> np.uint64(l)) & np.uint64(1):
+            continue
+        d = light_to_pattern(frame, lights[l])
+        x, y = d[0] - d[3] * view.p, d[1] - d[3] * view.q
+        far = math.hypot(x, y)
+        if far <= 1e-12 * abs(d[2]):
+            continue
+        x, y = x / far, y / far
+        u, v = applied(frame, x, y)
+        slope, bend = d[2] / far + u * (view.p - frame.pq[0]) + v * (view.q - frame.pq[1]), u * x + v * y
+        if slope < 0.0 and slope * slope > 2.0 * max(bend, 0.0) * deep:
+            continue
+        most = max(most, abs(bend) * deep / max(slope * slope, 1e-300))
+    return most
+
+
+@leaf
+def sag_of(frame: np.void, view: View, deep: float) -> float:
+    """How far sight that passes through so `deep` is from its chord, in parts of the footprint along it."""
+    x, y = frame.eye[0] - view.p, frame.eye[1] - view.q
+    far = math.hypot(x, y)
+    if far <= 1e-12 * frame.eye[2]:
+        return 0.0
+    x, y = x / far, y / far
+    u, v = applied(frame, x, y)
+    slope = frame.eye[2] / far
+    p0, q0 = on_plane(view, 0.0, 0.5)
+    p1, q1 = on_plane(view, 1.0, 0.5)
+    p2, q2 = on_plane(view, 0.5, 0.0)
+    p3, q3 = on_plane(view, 0.5, 1.0)
+    long = abs((p1 - p0) * x + (q1 - q0) * y) + abs((p3 - p2) * x + (q3 - q2) * y)
+    run = deep / slope
+    return abs(u * x + v * y) * run * run / (8.0 * slope * max(long, 1e-300))
+
+
+@leaf
+def left_out(
+    frame: np.void, view: View, low: float, high: float, top: float, apart: float, blocked: np.uint64,
+    lights: NDArray[np.void],
+) -> float:  # fmt: skip
+    """About the error of straight rays that stand for bent ones, relative to white: what the second order leaves out of
+    points so high over the surface or deep under it, and what rays between `low` and `high`, where all that is seen
+    lies, and from there to `top`, where light comes in, bend by. apart: what a second look has changed."""
     f = frame.form
-    turn = max(abs(f[0]), abs(f[1]), abs(f[2])) * high
-    return float(THIRD * turn * turn * turn + (1.0 + AGAIN * turn) * apart)
+    turn = max(abs(f[0]), abs(f[1]), abs(f[2])) * max(-low, top)
+    error = THIRD * turn * turn * turn + (1.0 + AGAIN * turn) * apart
+    if high > low:
+        error += sag_of(frame, view, high - low)
+    if top > low:
+        error += LOW_LIGHT * bends_of(frame, view, top - low, blocked, lights)
+    return float(min(error, 1.0))
+
+
+@leaf
+def left_by_lines(
+    frame: np.void, view: View, far: float, long: float, deep: float, blocked: np.uint64, lights: NDArray[np.void]
+) -> float:  # fmt: skip
+    """The same of a cross-section: what matters to it reaches so far across the grooves beyond a footprint, and so
+    `long` along them; they are so `deep`."""
+    drift = max(abs(frame.drift[0]), abs(frame.drift[1]), abs(frame.drift[2]))
+    error = ACROSS * unsure(frame, far) + DRIFTED * drift * long
+    return float(min(error + LINED * bends_of(frame, view, deep, blocked, lights), 1.0))

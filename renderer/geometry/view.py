@@ -7,6 +7,7 @@ and the denominator: exact under perspective, with no matrix to invert (DESIGN 2
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -81,3 +82,17 @@ def on_plane(view: View, u: float, v: float) -> tuple[float, float]:
 def slope_at(x: float, y: float, frame: np.void, camera: Camera) -> float:
     """How fast the ray through the screen point (x, y) falls to the base plane: the direction's w, below 0."""
     return direction_to_pattern(frame, through_screen(camera, x, y))[2]
+
+
+@leaf
+def thinnest(view: View, part: float) -> float:
+    """The least width, pattern units, of a square of this part of a view's sides, in its corners."""
+    least = math.inf
+    for k in range(4):
+        u, v = float(k & 1), float(k >> 1)
+        p0, q0 = on_plane(view, u, v)
+        p1, q1 = on_plane(view, u + part * (1.0 - 2.0 * u), v)
+        p2, q2 = on_plane(view, u, v + part * (1.0 - 2.0 * v))
+        long = max(math.hypot(p1 - p0, q1 - q0), math.hypot(p2 - p0, q2 - q0))
+        least = min(least, abs((p1 - p0) * (q2 - q0) - (p2 - p0) * (q1 - q0)) / long)
+    return least

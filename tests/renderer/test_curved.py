@@ -236,6 +236,19 @@ def test_crossing_ridges_in_low_light(method: str, worth: float, shape: str, rad
     assert off < worth * flat
 
 
+@pytest.mark.parametrize("across", [-0.03, 0.03])
+def test_rows_across_grooves_from_close(across: float, radiance: Radiance) -> None:
+    """A sun that runs along one row and low over the other: next to the terminator it comes along grooves from beyond
+    the tangent plane. There `auto` leaves it to rays; what it takes for sure is nowhere wrong."""
+    data = scene("cylinder", [row(0.1, -0.03, 30), row(0.1, across, 20, across=True)], 25.0)
+    data["camera"] |= {"fov": 24, "resolution": [48, 36]}
+    one, two = (radiance(data, method="geometry", samples=1024, seed=seed) for seed in (1, 2))
+    truth, noise = 0.5 * (one + two), np.abs(one - two).mean(axis=2)
+    off = np.abs(radiance(data, method="auto", tolerance=0.003) - truth).mean(axis=2)
+    assert np.mean(off <= 0.003 + noise) >= 0.95
+    assert off.max() < 0.03
+
+
 @pytest.mark.parametrize("shape", ["sphere", "cylinder"])
 def test_auto_says_what_it_is_wrong_by(shape: str, picture: Callable[..., Any], radiance: Radiance) -> None:
     """Of what is well seen 95 % keep within the tolerance or the error told: the goal of flat scenes."""
