@@ -22,7 +22,7 @@ LEVELS = 2, 7  # splits of a pixel on an edge, by tolerance
 CROWD = 4, 4  # but after the first number of splits, only while an edge meets no more than the second of parts a row
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
 TURN = 0.25, 2  # ... nor by more than 1 - cosine = TURN * tolerance (measured); up to so many splits for that alone
-MESH_TURN = 0.06, 3  # ... on meshes, which turn in every triangle, however small
+MESH_TURN = 0.06, 5  # ... on meshes, which turn in every triangle, however small
 CLOSE = 1e-3  # of a radius: no other object stands so near
 WITHIN = 1.0 - 1e-6  # of a cylinder's height: a place at its rim counts as one of its side
 OPEN = 1.5  # times the depth of the grooves: a footprint's corners may be seen at less slope than its centre
