@@ -19,10 +19,10 @@ from renderer.geometry.shapes import Shells, touching
 from renderer.tables import BESIDE, CYLINDER, FOOTPRINT, FRAME, HIT, MESH, RECTANGLE, THROUGH, Camera, Floats, Ints
 
 LEVELS = 2, 7  # splits of a pixel on an edge, by tolerance
-CROWD = 4, 4  # but after the first number of splits, only while an edge meets no more than the second of parts a row
+CROWD = 5, 8  # but after the first number of splits, only while an edge meets no more than the second of parts a row
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
 TURN = 0.25, 2  # ... nor by more than 1 - cosine = TURN * tolerance (measured); up to so many splits for that alone
-MESH_TURN = 0.06, 5  # ... on meshes, which turn in every triangle, however small
+MESH_TURN = 10.0, 5  # ... on meshes by MESH_TURN * tolerance^2: the edges of triangles err as normals turn there
 CLOSE = 1e-3  # of a radius: no other object stands so near
 WITHIN = 1.0 - 1e-6  # of a cylinder's height: a place at its rim counts as one of its side
 OPEN = 1.5  # times the depth of the grooves: a footprint's corners may be seen at less slope than its centre
@@ -131,10 +131,9 @@ def footprints(
         mask = shapes.blocked(camera.origin, middle_rays, middle, lights)
         smooth = last
         if level < finest:
-            turn = np.where(
-                (middle["object"] >= 0) & (shapes.objects["shape"][middle["object"]] == MESH),
-                *(part * tolerance * 2**level if level < most else 1.0 for part, most in (MESH_TURN, TURN)),
-            )  # an edge meets 2^level of 4^level parts
+            bends = (middle["object"] >= 0) & (shapes.objects["shape"][middle["object"]] == MESH)
+            limits = ((MESH_TURN, tolerance * tolerance), (TURN, tolerance))  # an edge meets 2^level of 4^level parts
+            turn = np.where(bends, *(part * of * 2**level if level < most else 1.0 for (part, most), of in limits))
             cosine = np.maximum(SMOOTH_COSINE, 1.0 - turn)
             smooth |= touching(middle, mask, corners, corner_mask, around, cosine)
         eyes, beside = np.broadcast_to(camera.origin, middle_rays.shape), np.zeros(len(middle), np.bool_)
