@@ -24,7 +24,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.geometry.colour import EVEN, centroid, colour_over, sharpness, turns
+from renderer.geometry.change import is_plain, peak, sharpness, turns
+from renderer.geometry.colour import EVEN, centroid, colour_over
 from renderer.geometry.curve import is_curved
 from renderer.geometry.faces import Faces
 from renderer.geometry.local import BLOCKS, FULL, Local, local_of
@@ -34,7 +35,6 @@ from renderer.geometry.sight import (
     bend_of,
     hidden_by,
     is_over,
-    is_plain,
     may_light,
     place_on,
     see,
@@ -54,6 +54,8 @@ LEAST = 1e-12  # parts of a footprint as small as this are nothing
 SUMMED = 0.1  # in tolerances: the shares of a footprint sum to one within this, or it is left to another method
 CHORDED = 2.0  # ... where chords stand for arcs and steps for scales; shares are divided by their sum
 SHARE = 0.1  # of the tolerance, that the colour of one part may use up
+# Chords are for this part of it, no less, where facets may be brighter than white: few are as bright as can be.
+GLOSSY = 0.25
 BENT = 0.5  # the error where chords stand for arcs, in tolerances
 SLIVER = 1e-3  # parts of a footprint as small as this do not say between which heights straight rays are to be right
 RED, GREEN, BLUE, WHOLE, OFF, CHORDS, COST, LOW, HIGH, TOP, ASIDE, DOWN, ACROSS = range(13)
@@ -272,12 +274,15 @@ def area_sampling(
     lights = lighting.lights
     turn = np.empty(len(lights) + 1)
     distant = are_distant(lights)
+    chords = tolerance
+    for slot in slots:
+        chords = min(chords, max(GLOSSY, 1.0 / math.sqrt(peak(materials[slot]))) * tolerance)
     for index in chosen:
         footprint = footprints[index]
         frame = frames[footprint.frame]
         method[index] = NOT_MINE
         view = view_of(footprint, frame, camera)
-        if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:
+        if see(pattern, frame, footprint, flat, camera, lights, chords, most, local, seen) == FULL:
             continue
         bright = white(lighting, to_world(frame, view.p, view.q, 0.0))
         long = turns(frame, view, lights, turn)

@@ -29,6 +29,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.change import peak, sharpness
 from renderer.geometry.curve import bow_of, is_curved, sink, turned
 from renderer.geometry.layout import (
     KNOWN,
@@ -67,12 +68,14 @@ from renderer.geometry.strings import (
     recall,
     stretch_of,
 )
+from renderer.geometry.tint import FLAT, Spread, facet_at, liven, spread_of, tint_over
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.shading import (
     DIFFUSE,
     GLOSSY,
     MIRROR,
+    Vector,
     ambient,
     answers,
     are_distant,
@@ -83,6 +86,7 @@ from renderer.shading import (
     normal_to_world,
     to_world,
     unit,
+    white,
 )  # fmt: skip
 from renderer.tables import BASE, LINE, NOT_MINE, SEGMENT_METHOD, Camera, Floats, Lighting, Pattern
 
@@ -94,72 +98,11 @@ PAPER = 2  # `segment` for the whole image
 CELLS = 3.0
 """Parts of a footprint in which light from facet to facet has one colour on each."""
 NARROW = 1e-4  # of a facet
+# What paths that bow by 1 over a footprint 1 wide fill of its two rims where they run along them: twice the integral of
+# (1 / 3 - u^2) / 2 over where that is positive.
+RIM = 0.257
 
 GAUSS = 0.5 / math.sqrt(3.0)
-
-
-@leaf
-def tint_of(
-    index: int, i: int, distant: bool, kept: bool, gathers: bool, curved: bool, folded_at: float, places_b: Floats,
-    heights: Floats, pattern: Pattern, frame: np.void, view: View, r: Reach, eye_d: float, eye_h: float,
-    lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, work: Work,
-) -> int:  # fmt: skip
-    """The row of `work.tint` with the colours of facet i, found once a footprint where they are `kept`.
-
-    The eye sees its points at `places_b` and `heights`; `folded_at`: from where a curved base's bend counts. gathers:
-    light from the sky is left to that from other facets.
-
-    Where they change along the groove they are the mean of two places, as far apart as the footprint is long on root
-    mean square. On curved paths the normal turns on the way to them, and to where the facet is seen through the plane.
-    """
-    row, slot, turn = -1, 0, 0.0
-    if work.owner[i] >= 0:
-        near = work.near[work.owner[i]]
-        piece = pattern.pieces[near.piece]
-        where = pattern.grooves[piece.groove].slot + work.facet[i]
-        slot = pattern.facet_slot[where] + 1
-        row = 2 * where + (1 if near.turned > 0.0 else 0)
-        turn = near.turned * piece.curvature
-    if kept and work.tinted[row] == index:
-        return row
-    work.tinted[row] = index
-    lights = lighting.lights
-    b0, w0, b1, w1 = work.b[i], work.w[i], work.b[i + 1], work.w[i + 1]
-    # the middle of what is seen of it
-    middle = 0.5 * (max(work.low[i], r.low) + min(work.high[i], r.high))
-    u = fraction_at(
-        middle, places_b[i], heights[i], places_b[i + 1], heights[i + 1], eye_d, frame.eye[2], eye_h
-    )  # fmt: skip
-    u = min(max(u, 0.0), 1.0)
-    b, w = b0 + u * (b1 - b0), w0 + u * (w1 - w0)
-    material = materials[slots[slot]]
-    places = 2 if turn != 0.0 or not distant or material.metallic > 0.0 or material.f90 > 0.0 else 1
-    tint = work.tint[row]
-    tint[:] = 0.0
-    eye = to_world(frame, frame.eye[0], frame.eye[1], frame.eye[2])
-    for k in range(places):
-        side = 0.0 if places == 1 else 2.0 * k - 1.0
-        t = r.eye_t * w + side * r.spread
-        sine, cosine = math.sin(turn * t), math.cos(turn * t)
-        bx, by = -r.ty * cosine - r.tx * sine, r.tx * cosine - r.ty * sine
-        at = to_world(frame, view.p + b * bx + t * r.tx, view.q + b * by + t * r.ty, w)
-        n_pattern = (-(w1 - w0) * bx, -(w1 - w0) * by, b1 - b0)
-        if curved:
-            x, y = (b - folded_at) * bx + t * r.tx, (b - folded_at) * by + t * r.ty
-            n_pattern = turned(frame, x, y, w, n_pattern)
-        n = normal_to_world(frame, n_pattern)
-        e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
-        for l in range(len(lights)):
-            colour = lit_by(lights[l], material, n, e, at)
-            for c in range(3):
-                tint[l, c] += colour[c] / places
-        if gathers:
-            colour = (material.emissive[0], material.emissive[1], material.emissive[2])
-        else:
-            colour = ambient(material, lighting, albedo, n, e)
-        for c in range(3):
-            tint[len(lights), c] += colour[c] / places
-    return row
 
 
 @leaf
@@ -196,6 +139,25 @@ def weight_all(
     if entries == 0:
         return float(work.sums[0, 1] * (high - low))
     return up_to(view, bx, by, centre, high, entries, work) - up_to(view, bx, by, centre, low, entries, work)
+
+
+@leaf
+def hidden_of(
+    low: float, high: float, change: Floats, curved: bool, spread: Spread, frame: np.void, view: View,
+    r: Reach, eye_d: float, eye_h: float, lighting: Lighting, material: np.void, albedo: Floats, work: Work,
+) -> Vector:  # fmt: skip
+    """What the plane would send to the eye between two places of the base line."""
+    red = green = blue = 0.0
+    low, high = max(low, r.low), min(high, r.high)
+    for l in range(len(change)):
+        if l < len(work.light) and work.light[l, 3] == 0.0:
+            continue
+        colour = tint_over(
+            -1, l, low, high, change[l], False, False, False, curved, 0.0, work.b, work.w, 0.0, spread, frame, view, r,
+            eye_d, eye_h, lighting, material, albedo, work,
+        )  # fmt: skip
+        red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
+    return red, green, blue
 
 
 @leaf
@@ -260,6 +222,11 @@ def line(
             method[index] = NOT_MINE
         return
     stretched, stretch_x, stretch_y, stretch = -1, 0.0, 0.0, 0.0  # a frame and T, and what `stretch_of` says of them
+    sharp = bright = 1.0
+    for slot in slots:
+        if sharpness(materials[slot]) > sharp:
+            sharp, bright = sharpness(materials[slot]), peak(materials[slot])
+    change = np.zeros(len(lights) + 1)  # of colours, under each light and under the sky
     most = 0  # points of a cross-section
     for profile in pattern.profiles:
         most = max(most, profile.count)
@@ -313,6 +280,28 @@ def line(
             far = max(r.wide_high - r.high, r.low - r.wide_low, pattern.width)
             deep = pattern.height + pattern.depth
             error = left_by_lines(frame, view, far, r.length, deep, footprint.blocked, lights)
+        still, groups, once, restless = matte and distant and not curved, 0, False, False
+        bowed = some = sway = 0.0
+        if not paper:
+            curvature = 0.0
+            for k in range(grooves):
+                curvature = max(curvature, abs(pattern.pieces[work.near[k].piece].curvature))
+            if not folded or entries > 0:  # else their mean is taken, and no path ends up on another side of a rim
+                bowed = 0.5 * curvature * r.length**2 / (r.high - r.low)
+            if curved:
+                f = frame.form
+                sway = max(abs(f[0]), abs(f[1]), abs(f[2])) * 2.0 * max(r.high, -r.low, r.length)
+            bend = curvature * 2.0 * r.length + sway
+            if folded:
+                groups = int(work.near[grooves - 1].group) + 1
+                once = groups == 1
+            off, some = liven(still, matte, sharp, bright, bend, sway, groups, frame, view, lights, change)
+            if bounces == 0:
+                error += off
+            else:  # rays would do it instead, from facet to facet
+                bowed = some = 0.0
+            for l in range(len(lights) + 1):
+                restless = restless or change[l] > FLAT
         if strict and not error <= rough:
             continue
         method[index] = BASE
@@ -335,6 +324,9 @@ def line(
         chord = chord_of(pattern, bow, len(lights), work) if curved and ridged else math.inf
         red = green = blue = 0.0
         plain = 1.0  # the share of the plane around the grooves
+        faintest, strongest = math.inf, 0.0  # of what is seen, the sum of channels
+        spread = spread_of(paper, view, r)
+        bare_of = restless and not folded and not shows  # what grooves hide of the plane is taken off it part by part
         full = False  # there is more than this has room for, or knows
         first = 0
         while first < grooves:
@@ -378,7 +370,14 @@ def line(
             spans(b, work.x, work.low, work.high, n, foot_of(eye_d, eye_h))
             if not (ridged and (folded or curved)):
                 low, high = (work.x[0], work.x[n - 1]) if curved else (work.b[0], work.b[n - 1])
-                plain -= copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, low, high)
+                part = copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, low, high)
+                plain -= part
+                if bare_of and part > 0.0:
+                    hidden = hidden_of(
+                        low, high, change, curved, spread, frame, view, r, eye_d, eye_h, lighting,
+                        materials[slots[0]], albedo, work,
+                    )  # fmt: skip
+                    red, green, blue = red - part * hidden[0], green - part * hidden[1], blue - part * hidden[2]
             cavity, ready = -1, True
             if gathers:
                 if not lone:  # what is left of grooves that overlap is no profile
@@ -423,15 +422,27 @@ def line(
                     continue
                 if ridged and (folded or curved):
                     plain -= part
-                kept = distant and (matte or not folded) and not curved
-                hue = tint_of(
-                    index, i, distant, kept, gathers, curved, amid, b, h, pattern, frame, view, r, eye_d, eye_h,
-                    lighting, materials, slots, albedo, work,
-                )  # fmt: skip
+                    if bare_of:
+                        hidden = hidden_of(
+                            low, high, change, curved, spread, frame, view, r, eye_d, eye_h, lighting,
+                            materials[slots[0]], albedo, work,
+                        )  # fmt: skip
+                        red, green, blue = red - part * hidden[0], green - part * hidden[1], blue - part * hidden[2]
+                hue, slot, turn = facet_at(i, pattern, work)
                 tint = work.tint[hue]
+                x0, x1 = (low, high) if folded else (max(low, r.low), min(high, r.high))
+                if not still or work.tinted[hue] != index:
+                    for l in range(0 if still else len(lights), len(lights) + 1):
+                        colour = tint_over(
+                            i, l, x0, x1, change[l], folded, once, gathers, curved, amid, b, h, turn, spread, frame,
+                            view, r, eye_d, eye_h, lighting, materials[slots[slot]], albedo, work,
+                        )  # fmt: skip
+                        tint[l, 0], tint[l, 1], tint[l, 2] = colour[0], colour[1], colour[2]
+                    work.tinted[hue] = index
                 red += part * tint[len(lights), 0]
                 green += part * tint[len(lights), 1]
                 blue += part * tint[len(lights), 2]
+                faint = strong = tint[len(lights), 0] + tint[len(lights), 1] + tint[len(lights), 2]
                 b0, w0, b1, w1 = b[i], h[i], b[i + 1], h[i + 1]
                 for l in range(len(lights)):
                     light = work.light[l]
@@ -452,7 +463,19 @@ def line(
                         lit = copies * weight_all(
                             folded, entries, work, paper, view, bx, by, centre, half, from_x, to_x
                         )
-                    red, green, blue = red + lit * tint[l, 0], green + lit * tint[l, 1], blue + lit * tint[l, 2]
+                    colour = (tint[l, 0], tint[l, 1], tint[l, 2])
+                    if not still:
+                        if not folded:
+                            from_x, to_x = max(from_x, r.low), min(to_x, r.high)
+                        colour = tint_over(
+                            i, l, from_x, to_x, change[l], folded, once, gathers, curved, amid, b, h, turn, spread,
+                            frame, view, r, eye_d, eye_h, lighting, materials[slots[slot]], albedo, work,
+                        )  # fmt: skip
+                    red, green, blue = red + lit * colour[0], green + lit * colour[1], blue + lit * colour[2]
+                    strong += colour[0] + colour[1] + colour[2]
+                    if lit == part:
+                        faint += colour[0] + colour[1] + colour[2]
+                faintest, strongest = min(faintest, faint), max(strongest, strong)
                 if gathers:
                     cells, here, there = 1, low, high
                     if not folded:
@@ -502,12 +525,15 @@ def line(
             continue
         if folded and plain < 0.0:  # what a fold is off by
             red, green, blue = red / (1.0 - plain), green / (1.0 - plain), blue / (1.0 - plain)
+        if bare_of:
+            plain = 1.0
         if plain > 1e-12:
             n_world = normal_to_world(frame, (0.0, 0.0, 1.0))
             material = materials[slots[0]]
             side = 2 if not distant or material.metallic > 0.0 or material.f90 > 0.0 or curved else 1
             eye = to_world(frame, frame.eye[0], frame.eye[1], eye_w)
             part = plain / (side * side)
+            before = red + green + blue
             for k in range(side * side):  # at the places of Gauss in the pixel's square, where the light changes in it
                 p, q = view.p, view.q
                 if side == 2:
@@ -527,6 +553,14 @@ def line(
                     if work.light[l, 3] != 0.0:
                         colour = lit_by(lights[l], material, n_world, e, at)
                         red, green, blue = red + part * colour[0], green + part * colour[1], blue + part * colour[2]
+            level = (red + green + blue - before) / plain
+            faintest, strongest = min(faintest, level), max(strongest, level)
+        if bowed > 0.0 or some > 0.0:
+            unit_of = 3.0 * white(lighting, to_world(frame, view.p, view.q, 0.0))
+            error += (RIM * bowed * max(strongest - faintest, 0.0) + some * min(strongest, bright * unit_of)) / unit_of
+            if strict and not error <= rough:
+                method[index] = NOT_MINE
+                continue
         radiance[index, 3] = error
         radiance[index, 0], radiance[index, 1], radiance[index, 2] = red, green, blue
     keep(owned)

@@ -26,6 +26,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.change import is_plain
 from renderer.geometry.faces import FACES, Faces
 from renderer.geometry.local import FULL, local_of
 from renderer.geometry.polygon import CORNERS, Counts
@@ -37,7 +38,6 @@ from renderer.geometry.sight import (
     colour_at,
     hidden_by,
     is_over,
-    is_plain,
     may_light,
     place_on,
     see,

@@ -426,12 +426,6 @@ def tinge(
 
 
 @leaf
-def is_plain(material: np.void) -> bool:
-    """Whether a material looks the same from everywhere."""
-    return bool(material.metallic == 0.0 and material.f90 == 0.0)
-
-
-@leaf
 def bend_of(pattern: Pattern, f: int, found: Nearby, faces: Faces) -> float:
     """How fast the normal of a face turns on its way along the groove, radians a pattern unit."""
     if faces.tag[f, 0] < 0 or faces.tag[f, 2] != 0:
