@@ -26,7 +26,7 @@ GROOVES: list[Json] = [
 
 @pytest.mark.parametrize("method", pipeline.METHODS)
 def test_same_bytes(method: str, plate: Callable[..., Json], picture: Callable[..., pipeline.Picture]) -> None:
-    scene = plate(GROOVES, [1.9, 1.8])
+    scene = plate(GROOVES, [1.9, 1.8], render={"tolerance": 0.05})  # few samples tell as much as many
     if method != "geometry":
         ball = {
             "shape": {"type": "sphere", "radius": 0.4},
