@@ -26,7 +26,7 @@ from renderer.tables import DIRECTIONAL
 from service.chart.record import APART
 from service.chart.settings import MINE, Setting
 
-NAMES = ("parallel", "tiles", "single", "vinyl", "hieroglyphs", "brushed", "scratches")
+NAMES = ("parallel", "tiles", "single", "vinyl", "dovetail", "hieroglyphs", "brushed", "scratches")
 TOLERANCES = (0.01, 0.003, 0.001)
 SHARE = 0.95
 SIZE = (32, 24)

@@ -200,9 +200,10 @@ def divide(
         most = 0.5 * math.pi * size  # that an arc goes on to its mitre; past other ends there would be slivers
         low = -min(2.0 * abs(piece.start_mitre) * piece.half, most)
         high = piece.length + min(2.0 * abs(piece.finish_mitre) * piece.half, most)
-        # Chords whose mean leaves the arc by nothing, and their ends and middles by about half of this each.
+        # Chords whose mean leaves the arc by nothing, and their ends and middles by about half of this each. Powers of
+        # two of them, so that those of rings side by side lie side by side: else gaps open between rings that touch.
         turn = min(math.sqrt(12.0 * tolerance / (size + piece.half)), BEND)
-        step = piece.length / math.ceil(max(piece.length / (turn * size), 1.0))
+        step = piece.length * 2.0 ** -max(math.ceil(math.log2(piece.length / (turn * size)) - 0.5), 0.0)
         if groove.scale_kind == SCALE_SINE:  # chunks as long as one another
             step = min(step, bends(pattern, groove, piece, 0.0, piece.length, tolerance))
             step = piece.length / math.ceil(piece.length / step - 1e-9)
