@@ -55,6 +55,7 @@ from renderer.geometry.layout import (
 from renderer.geometry.reach import Reach
 from renderer.geometry.reflection import reflections
 from renderer.geometry.section import along, carried, foot_of, fraction_at, onto_base, spans
+from renderer.geometry.slices import SLICES, along_bent, slice_up
 from renderer.geometry.straight import left_by_lines
 from renderer.geometry.strings import (
     APART,
@@ -68,7 +69,7 @@ from renderer.geometry.strings import (
     recall,
     stretch_of,
 )
-from renderer.geometry.tint import FLAT, Spread, facet_at, liven, spread_of, tint_over
+from renderer.geometry.tint import FLAT, WIDE, Spread, bent_at, facet_at, liven, spread_of, tint_over
 from renderer.geometry.view import View, on_plane, view_of
 from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.shading import (
@@ -98,19 +99,13 @@ PAPER = 2  # `segment` for the whole image
 CELLS = 3.0
 """Parts of a footprint in which light from facet to facet has one colour on each."""
 NARROW = 1e-4  # of a facet
+BESIDE = 0.35  # of the brightest: facets that are not seen or not lit here may be so next to it
+FINE = 0.25  # of the error that may be left: slices of a footprint are so many that paths bow by no more in each
 # What paths that bow by 1 over a footprint 1 wide fill of its two rims where they run along them: twice the integral of
 # (1 / 3 - u^2) / 2 over where that is positive.
 RIM = 0.257
 
 GAUSS = 0.5 / math.sqrt(3.0)
-
-
-@leaf
-def weight(paper: bool, view: View, bx: float, by: float, centre: float, half: float, low: float, high: float) -> float:
-    """The share of the footprint between two places along B: of its area, or of the papers' segment [-half, half]."""
-    if paper:
-        return (min(max(high, -half), half) - min(max(low, -half), half)) / (2.0 * half)
-    return along(view, bx, by, centre + high) - along(view, bx, by, centre + low)
 
 
 @leaf
@@ -129,16 +124,21 @@ def up_to(view: View, bx: float, by: float, centre: float, y: float, entries: in
 
 
 @leaf
-def weight_all(
-    folded: bool, entries: int, work: Work, paper: bool, view: View, bx: float, by: float, centre: float, half: float,
-    low: float, high: float,
+def weigh(
+    folded: bool, entries: int, cuts: int, paper: bool, view: View, bx: float, by: float,
+    centre: float, half: float, low: float, high: float, work: Work,
 ) -> float:  # fmt: skip
-    """The same for all that a groove stands for."""
-    if not folded or entries == 1:
-        return weight(paper, view, bx, by, centre, half, low, high)
-    if entries == 0:
+    """The share of the footprint between two places along B: of its area, or of the papers' segment [-half, half]; for
+    all that a groove stands for. cuts: so many slices are there, where paths bend; 1: none."""
+    if paper:
+        return (min(max(high, -half), half) - min(max(low, -half), half)) / (2.0 * half)
+    if folded and entries == 0:
         return float(work.sums[0, 1] * (high - low))
-    return up_to(view, bx, by, centre, high, entries, work) - up_to(view, bx, by, centre, low, entries, work)
+    if folded and entries > 1:
+        return up_to(view, bx, by, centre, high, entries, work) - up_to(view, bx, by, centre, low, entries, work)
+    if cuts > 1:
+        return along_bent(cuts, high, work.slices) - along_bent(cuts, low, work.slices)
+    return along(view, bx, by, centre + high) - along(view, bx, by, centre + low)
 
 
 @leaf
@@ -226,6 +226,11 @@ def line(
     for slot in slots:
         if sharpness(materials[slot]) > sharp:
             sharp, bright = sharpness(materials[slot]), peak(materials[slot])
+    pale = 0.0  # the brightest matt facet
+    for slot in slots:
+        base, material = materials[slot].base_color, materials[slot]
+        body = (1.0 - material.metallic) * (1.0 - material.transmission)
+        pale = max(pale, body * (base[0] + base[1] + base[2]) / 3.0)
     change = np.zeros(len(lights) + 1)  # of colours, under each light and under the sky
     most = 0  # points of a cross-section
     for profile in pattern.profiles:
@@ -248,9 +253,9 @@ def line(
             if lamp < NEAR_LAMP * pattern.width:
                 continue
         eye_p, eye_q = (frame.eye[0] - view.p) / eye_w, (frame.eye[1] - view.q) / eye_w
-        grooves = entries = 0
+        grooves, entries, crooked = 0, 0, 0.0
         if not paper and clear and len(pattern.families) > 0 and eye_w > LEVEL * pattern.height:
-            grooves, entries, r = fold_within(curved, beyond, pattern, frame, view, lights, work)
+            grooves, entries, crooked, r = fold_within(curved, beyond, pattern, frame, view, lights, work)
         folded = grooves > 0
         if entries > 1:
             work.known[:, 0] = np.inf
@@ -269,7 +274,7 @@ def line(
                 count = find_within(pattern, view, longer(r, beyond), work)
                 if count < 0:
                     continue
-            grooves = pick(strict, beyond, pattern, view, longer(r, beyond), count, work)
+            grooves, crooked = pick(strict, beyond, pattern, view, longer(r, beyond), count, work)
         chords = ROUND if curved else 0
         if samples and grooves > 0:
             continue
@@ -280,12 +285,16 @@ def line(
             far = max(r.wide_high - r.high, r.low - r.wide_low, pattern.width)
             deep = pattern.height + pattern.depth
             error = left_by_lines(frame, view, far, r.length, deep, footprint.blocked, lights)
-        still, groups, once, restless = matte and distant and not curved, 0, False, False
+        cuts, still, groups, once, restless = 1, matte and distant and not curved, 0, False, False
         bowed = some = sway = 0.0
         if not paper:
-            curvature = 0.0
+            curvature, left, right = 0.0, math.inf, -math.inf  # to the right the least, to the left the most
             for k in range(grooves):
-                curvature = max(curvature, abs(pattern.pieces[work.near[k].piece].curvature))
+                for side in range(2):
+                    near = work.near[k]
+                    at = max(near.start, r.low) if side == 0 else min(near.finish, r.high)
+                    bend = bent_at(near.turned * pattern.pieces[near.piece].curvature, at - near.axis)
+                    curvature, left, right = max(curvature, abs(bend)), min(left, bend), max(right, bend)
             if not folded or entries > 0:  # else their mean is taken, and no path ends up on another side of a rim
                 bowed = 0.5 * curvature * r.length**2 / (r.high - r.low)
             if curved:
@@ -295,11 +304,15 @@ def line(
             if folded:
                 groups = int(work.near[grooves - 1].group) + 1
                 once = groups == 1
-            off, some = liven(still, matte, sharp, bright, bend, sway, groups, frame, view, lights, change)
-            if bounces == 0:
-                error += off
-            else:  # rays would do it instead, from facet to facet
+            crowd, some = liven(still, matte, sharp, bright, bend, sway, groups, frame, view, lights, change)
+            if bounces > 0:  # rays would do it instead, from facet to facet
                 bowed = some = 0.0
+            elif crowd > WIDE:
+                error += crowd / WIDE
+            if bowed > 0.0 and not folded:
+                cuts = int(min(max(math.ceil(math.sqrt(RIM * bowed / (FINE * rough))), 1.0), SLICES + 0.0))
+                if cuts > 1:  # along one path for all
+                    bowed *= 1.0 / (cuts * cuts) + 0.5 * (right - left) / curvature
             for l in range(len(lights) + 1):
                 restless = restless or change[l] > FLAT
         if strict and not error <= rough:
@@ -325,7 +338,10 @@ def line(
         red = green = blue = 0.0
         plain = 1.0  # the share of the plane around the grooves
         faintest, strongest = math.inf, 0.0  # of what is seen, the sum of channels
+        unsure = 0.0  # of colours, the sum of channels
         spread = spread_of(paper, view, r)
+        if cuts > 1:
+            slice_up(cuts, 0.5 * (left + right), view, r, work.slices)
         bare_of = restless and not folded and not shows  # what grooves hide of the plane is taken off it part by part
         full = False  # there is more than this has room for, or knows
         first = 0
@@ -370,7 +386,7 @@ def line(
             spans(b, work.x, work.low, work.high, n, foot_of(eye_d, eye_h))
             if not (ridged and (folded or curved)):
                 low, high = (work.x[0], work.x[n - 1]) if curved else (work.b[0], work.b[n - 1])
-                part = copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, low, high)
+                part = copies * weigh(folded, entries, cuts, paper, view, bx, by, centre, half, low, high, work)
                 plain -= part
                 if bare_of and part > 0.0:
                     hidden = hidden_of(
@@ -417,7 +433,8 @@ def line(
                     or (not folded and (high <= min(r.low, -half) or low >= max(r.high, half)))
                 ):
                     continue
-                part = copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, low, high)
+                hue, slot, turn = facet_at(i, pattern, work)
+                part = copies * weigh(folded, entries, cuts, paper, view, bx, by, centre, half, low, high, work)
                 if part <= 0.0:
                     continue
                 if ridged and (folded or curved):
@@ -428,16 +445,16 @@ def line(
                             materials[slots[0]], albedo, work,
                         )  # fmt: skip
                         red, green, blue = red - part * hidden[0], green - part * hidden[1], blue - part * hidden[2]
-                hue, slot, turn = facet_at(i, pattern, work)
                 tint = work.tint[hue]
                 x0, x1 = (low, high) if folded else (max(low, r.low), min(high, r.high))
-                if not still or work.tinted[hue] != index:
+                if not still or restless or work.tinted[hue] != index:
                     for l in range(0 if still else len(lights), len(lights) + 1):
                         colour = tint_over(
                             i, l, x0, x1, change[l], folded, once, gathers, curved, amid, b, h, turn, spread, frame,
                             view, r, eye_d, eye_h, lighting, materials[slots[slot]], albedo, work,
                         )  # fmt: skip
                         tint[l, 0], tint[l, 1], tint[l, 2] = colour[0], colour[1], colour[2]
+                        unsure += part * colour[3]
                     work.tinted[hue] = index
                 red += part * tint[len(lights), 0]
                 green += part * tint[len(lights), 1]
@@ -460,10 +477,10 @@ def line(
                         continue
                     lit = part
                     if from_x != low or to_x != high:
-                        lit = copies * weight_all(
-                            folded, entries, work, paper, view, bx, by, centre, half, from_x, to_x
-                        )
-                    colour = (tint[l, 0], tint[l, 1], tint[l, 2])
+                        lit = copies * weigh(
+                            folded, entries, cuts, paper, view, bx, by, centre, half, from_x, to_x, work
+                        )  # fmt: skip
+                    colour = (tint[l, 0], tint[l, 1], tint[l, 2], 0.0)
                     if not still:
                         if not folded:
                             from_x, to_x = max(from_x, r.low), min(to_x, r.high)
@@ -472,6 +489,7 @@ def line(
                             frame, view, r, eye_d, eye_h, lighting, materials[slots[slot]], albedo, work,
                         )  # fmt: skip
                     red, green, blue = red + lit * colour[0], green + lit * colour[1], blue + lit * colour[2]
+                    unsure += lit * colour[3]
                     strong += colour[0] + colour[1] + colour[2]
                     if lit == part:
                         faint += colour[0] + colour[1] + colour[2]
@@ -495,7 +513,9 @@ def line(
                         if cell + 1 < cells:
                             x1 = x0 + (there - here) / cells
                             u2 = fraction_at(x1, b0, w0, b1, w1, eye_d, eye_w, eye_h)
-                            lit = copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, x0, x1)
+                            lit = copies * weigh(
+                                folded, entries, cuts, paper, view, bx, by, centre, half, x0, x1, work
+                            )  # fmt: skip
                         y1 = gathered(cavity, i, u2, work.strings)
                         if u2 > u0:
                             mean = lit / (u2 - u0)
@@ -518,7 +538,9 @@ def line(
                 full = full or made < 0
                 for k in range(made):
                     row = work.mirrors.seen[k]
-                    lit = copies * weight_all(folded, entries, work, paper, view, bx, by, centre, half, row[0], row[1])
+                    lit = copies * weigh(
+                        folded, entries, cuts, paper, view, bx, by, centre, half, row[0], row[1], work
+                    )  # fmt: skip
                     red, green, blue = red + lit * row[2], green + lit * row[3], blue + lit * row[4]
         if full:
             method[index] = NOT_MINE
@@ -542,22 +564,27 @@ def line(
                     n_world = normal_to_world(frame, turned(frame, p - view.p, q - view.q, 0.0, (0.0, 0.0, 1.0)))
                 at = to_world(frame, p, q, 0.0)
                 e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
-                colour = ambient(material, lighting, albedo, n_world, e)
-                red, green, blue = red + part * colour[0], green + part * colour[1], blue + part * colour[2]
+                given = ambient(material, lighting, albedo, n_world, e)
+                red, green, blue = red + part * given[0], green + part * given[1], blue + part * given[2]
                 if shows:
-                    colour = mirrored(material, dot(n_world, e))
-                    red += part * colour[0] * lighting.sky[0]
-                    green += part * colour[1] * lighting.sky[1]
-                    blue += part * colour[2] * lighting.sky[2]
+                    shown = mirrored(material, dot(n_world, e))
+                    red += part * shown[0] * lighting.sky[0]
+                    green += part * shown[1] * lighting.sky[1]
+                    blue += part * shown[2] * lighting.sky[2]
                 for l in range(len(lights)):
                     if work.light[l, 3] != 0.0:
-                        colour = lit_by(lights[l], material, n_world, e, at)
-                        red, green, blue = red + part * colour[0], green + part * colour[1], blue + part * colour[2]
+                        given = lit_by(lights[l], material, n_world, e, at)
+                        red, green, blue = red + part * given[0], green + part * given[1], blue + part * given[2]
             level = (red + green + blue - before) / plain
             faintest, strongest = min(faintest, level), max(strongest, level)
-        if bowed > 0.0 or some > 0.0:
+        if bounces > 0:
+            unsure = 0.0
+        if bowed > 0.0 or some > 0.0 or crooked > 0.0 or unsure > 0.0:
             unit_of = 3.0 * white(lighting, to_world(frame, view.p, view.q, 0.0))
-            error += (RIM * bowed * max(strongest - faintest, 0.0) + some * min(strongest, bright * unit_of)) / unit_of
+            apart = max(strongest - faintest, 0.0)
+            unsure += RIM * bowed * apart + crooked * max(apart, BESIDE * pale * unit_of)
+            unsure += some * min(strongest, bright * unit_of)
+            error += unsure / unit_of
             if strict and not error <= rough:
                 method[index] = NOT_MINE
                 continue

@@ -32,7 +32,7 @@ import numpy as np
 
 from renderer.geometry.pieces import is_beyond, locate
 from renderer.geometry.query import Nearby, find_in
-from renderer.geometry.reach import STRAIGHT, TURNED, Reach
+from renderer.geometry.reach import SPUN, Reach, aside_by
 from renderer.geometry.section import along
 from renderer.geometry.view import View, on_plane
 from renderer.kernel import fixed, leaf
@@ -133,31 +133,26 @@ def any_within(pattern: Pattern, found: Nearby, count: int, view: View, radius: 
 
 
 @leaf
-def runs_straight(family: np.void, view: View, r: Reach) -> bool:
-    """Whether the family's paths run on through all that matters to the footprint, and bend no more there than what
-    counts as straight."""
+def bends_by(family: np.void, view: View, r: Reach) -> float:
+    """What is left to error where the family's paths bend past the footprint, in parts of what facets differ by; more
+    than CROOKED where that, or what they bend within it, is too much, or where they end before what matters to it."""
     length = max(-r.long_low, r.long_high)
+    axis = family_at(family, view.p, view.q)[2]
     if family.radius > 0.0:
-        axis = family_at(family, view.p, view.q)[2]
         last = family.radius - (family.count - 1.0) * family.period - (family.finish - family.start)
         least = max(axis + family.radius - r.wide_high, last)
-        turn = 0.5 / least
-        return (
-            least > 0.0
-            and turn * r.length**2 <= STRAIGHT * (r.high - r.low)
-            and turn * (length - r.length) ** 2 <= STRAIGHT * family.half
-            and 2.0 * turn * (length - r.length) <= TURNED
-        )
+        if least <= 0.0 or r.length**2 > least * (r.high - r.low):
+            return math.inf
+        return aside_by(1.0 / least, length - r.length, family.half) + SPUN * (r.length / least) ** 2
     if math.isinf(family.length):
-        return True
-    axis = family_at(family, view.p, view.q)[2]
+        return 0.0
     on = (view.p - family.x) * family.tx + (view.q - family.y) * family.ty
     for side in range(2):
         k = ((r.wide_low if side == 0 else r.wide_high) - axis) / family.period
         s = on - family.slip * min(max(k, -1.0), family.count)
         if s + r.long_low < 0.0 or s + r.long_high > family.length:
-            return False
-    return True
+            return math.inf
+    return 0.0
 
 
 @leaf

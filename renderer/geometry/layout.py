@@ -12,25 +12,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.curve import Bow, applied, reach_over
-from renderer.geometry.folds import SUMS, any_within, crowded, extent_along, family_at, fold, is_alone, runs_straight
+from renderer.geometry.folds import SUMS, any_within, bends_by, crowded, extent_along, family_at, fold, is_alone
 from renderer.geometry.pieces import is_beyond, locate, scale_at, tangent_at
 from renderer.geometry.query import Nearby, find, nearby, over_crossing
-from renderer.geometry.reach import NEAR, STRAIGHT, TURNED, Reach
+from renderer.geometry.reach import CROOKED, NEAR, SPUN, Reach, aside_by
 from renderer.geometry.reflection import Mirrors, Section, mirrors
 from renderer.geometry.section import ACROSS, shifts
+from renderer.geometry.slices import SLICES
 from renderer.geometry.strings import BENT, Strings, strings
 from renderer.geometry.view import View, on_plane
 from renderer.kernel import callee, fixed, leaf
 from renderer.shading import light_to_pattern
-from renderer.tables import SCALE_SINE, SCALE_TABLE, SMOOTH, Floats, Pattern
+from renderer.tables import SCALE_CONSTANT, SCALE_SINE, SCALE_TABLE, SMOOTH, Floats, Pattern
 
 CAPACITY = fixed(2048)  # pieces near a footprint; more are left to sampling
 POINTS = fixed(16384)  # points of one cross-section
 KNOWN = fixed(8)  # shares of a folded footprint that are kept
 
-SLOPED = 0.003
-"""The change of a path's scale, by its width or the footprint's length, from which on facets count as tilted: what they
-reflect is off by about as much."""
+NARROWEST = 1e-6  # of a radius: paths are not known to bend by more
+BOWED = 0.5  # of its width: paths that bow by more within a footprint have left their tangents
 PARALLEL = 1e-6  # sine of the angle between grooves that count as parallel
 NEARLY_PARALLEL = 0.05  # ... where it need not be right
 ROUND = fixed(16)  # chords of the base between two grooves, at most
@@ -59,6 +59,7 @@ class Work(NamedTuple):
     known: Floats  # (KNOWN + 1, 2) shares known of such sums: places along B, shares; then the row to write next
     bent: Floats  # (POINTS,) on a curved base: the points along B, where their heights lean out, and their heights
     sunk: Floats  # (lights + 1, POINTS) over the tangent plane, where each light meets them, and then the eye
+    slices: Floats  # (SLICES, 6) of the footprint (`slice_up`)
     rims: Floats  # (6, 2) first and last of the periods of a fold that are summed one by one
     tint: Floats  # (2 facets + 1, lights + 1, 3) radiance of a facet under each light, then under the sky
     tinted: NDArray[np.int64]  # (2 facets + 1,) the footprint for which `tint` holds
@@ -76,7 +77,7 @@ def work_for(pattern: Pattern, lights: int) -> Work:
         np.empty(POINTS, np.int64), np.empty(POINTS, np.int64), np.empty(POINTS), np.empty(POINTS), np.empty(POINTS),
         np.empty((lights, POINTS)), np.empty((lights, POINTS)), np.empty((lights, 6)), np.empty((lights, 2)),
         np.empty((SUMS, 2)), np.zeros((KNOWN + 1, 2)), np.empty(POINTS), np.empty((lights + 1, POINTS)),
-        np.empty((6, 2)),
+        np.empty((SLICES, 6)), np.empty((6, 2)),
         np.empty((2 * facets + 1, lights + 1, 3)), np.full(2 * facets + 1, -1, np.int64),
         Section(b, w, np.empty(POINTS, np.int64), np.empty((lights, POINTS, 2))), mirrors(), strings(lights),
     )  # fmt: skip
@@ -277,13 +278,17 @@ def steepest(pattern: Pattern, groove: np.void, piece: np.void, s: float, slope:
 
 
 @leaf
-def pick(strict: bool, beyond: float, pattern: Pattern, view: View, r: Reach, count: int, work: Work) -> int:
-    """Fill `work.near` with the grooves that run along T, from left to right: how many.
+def pick(
+    strict: bool, beyond: float, pattern: Pattern, view: View, r: Reach, count: int, work: Work
+) -> tuple[int, float]:  # fmt: skip
+    """Fill `work.near` with the grooves that run along T, from left to right: how many; and what is left to error where
+    they bend past the footprint and change their scales, in parts of what facets differ by.
 
-    -1 where ridges overlap; strict: and where anything in reach is not parallel, ends, bends or changes its scale too
-    much, or overlaps. beyond: so much of the reach along T is there for light from facet to facet, which hardly asks
-    for how grooves bend and scale.
+    -1 where ridges overlap; strict: and where anything in reach is not parallel, ends, bends or changes its scale far
+    too much, or overlaps. beyond: so much of the reach along T is there for light from facet to facet, which hardly
+    asks for how grooves bend and scale.
     """
+    crooked = 0.0
     found = work.found
     n = 0
     spread = max(-r.long_low, r.long_high) + max(-r.wide_low, r.wide_high)
@@ -316,36 +321,41 @@ def pick(strict: bool, beyond: float, pattern: Pattern, view: View, r: Reach, co
         )
         if overhangs or abs(sine) > (PARALLEL if strict else NEARLY_PARALLEL):
             if strict:
-                return -1
+                return -1, 0.0
             continue
         sign = 1.0 if cosine >= 0.0 else -1.0
         if piece.closed == 0:
             if strict and (
                 (s0 < 0.0 and piece.start_end != SMOOTH) or (s1 > piece.length and piece.finish_end != SMOOTH)
             ):
-                return -1
+                return -1, 0.0
             if s < 0.0 or s > piece.length:
                 continue  # the next piece takes it on
         f, slope = scale_at(pattern.scale_table, groove, piece, s)
-        if strict:
-            # Bending moves whole strips aside: it tells at the footprint's rim, and between a facet and its shadow.
-            # Most where it is nearest to the centre of curvature.
-            inwards = piece.curvature
+        # Bending moves whole strips aside: it tells at the footprint's rim, and between a facet and its shadow. Most
+        # where it is nearest to the centre of curvature.
+        bent = 0.0
+        if piece.curvature != 0.0:
             left, right = min(max(b0, -piece.half), piece.half), min(max(b1, -piece.half), piece.half)
-            closest = 1.0 - max(inwards * left, inwards * right)  # to the centre, in radii
-            if closest <= 0.0:
-                return -1
-            turn = abs(inwards) / closest
-            if beyond > 0.0 and turn * piece.half > BENT:
-                return -1
-            if 0.5 * turn * r.length**2 > STRAIGHT * (r.high - r.low):
-                return -1
-            if 0.5 * turn * (length - r.length) ** 2 > STRAIGHT * piece.half:
-                return -1
-            if turn * (length - r.length) > TURNED:
-                return -1
-            if steepest(pattern, groove, piece, s, slope, length) * max(length, pattern.depth, piece.half) > SLOPED * f:
-                return -1
+            closest = 1.0 - max(piece.curvature * left, piece.curvature * right)  # to the centre, in radii
+            if strict and closest <= 0.0:
+                return -1, 0.0
+            turn = abs(piece.curvature) / max(closest, NARROWEST)
+            if strict and beyond > 0.0 and turn * piece.half > BENT:
+                return -1, 0.0
+            around = bend / max(closest, NARROWEST)
+            only = one_facet(pattern, profile, f, b0 - around, b1 + around)
+            if only == 0:
+                bent = aside_by(turn, length - r.length, piece.half)
+                if strict and 0.5 * turn * r.length**2 > BOWED * (r.high - r.low):
+                    return -1, 0.0
+            if only < 2:
+                bent += SPUN * (turn * r.length) ** 2
+        if groove.scale_kind != SCALE_CONSTANT:  # facets are tilted: what they reflect is off by about as much
+            bent += steepest(pattern, groove, piece, s, slope, length) * max(length, pattern.depth, piece.half) / f
+        if strict and bent > CROOKED:
+            return -1, 0.0
+        crooked = max(crooked, bent)
         # A curved path runs beside its tangent: in the mean over the footprint so far.
         axis = sign * (0.5 * piece.curvature * r.spread * r.spread - b)
         start = axis + f * (profile.left if sign > 0.0 else -profile.right)
@@ -377,13 +387,26 @@ def pick(strict: bool, beyond: float, pattern: Pattern, view: View, r: Reach, co
                 if same:
                     continue
             if g.start < h.finish + hair and is_upright(pattern, h, True) and is_upright(pattern, g, False):
-                return -1  # no wall stands where upright ones touch
+                return -1, 0.0  # no wall stands where upright ones touch
             if (strict or pattern.height > 0.0) and g.start < h.finish - hair:
-                return -1  # ridges that overlap are not laid out one beside the other
+                return -1, 0.0  # ridges that overlap are not laid out one beside the other
             last += 1
             work.near[last] = g
         n = last + 1
-    return n
+    return n, crooked
+
+
+@leaf
+def one_facet(pattern: Pattern, profile: np.void, scale: float, low: float, high: float) -> int:
+    """Whether one facet fills a cross-section from `low` to `high`: 2 where it is level, 1 where it is not; 0: no."""
+    i = profile.start
+    end = i + profile.count
+    while i < end and scale * pattern.points[i, 0] <= low:
+        i += 1
+    if i < end and scale * pattern.points[i, 0] < high:
+        return 0
+    beyond = i == profile.start or i == end
+    return 2 if beyond or pattern.points[i - 1, 1] == pattern.points[i, 1] else 1
 
 
 @leaf
@@ -461,16 +484,16 @@ def chord_of(pattern: Pattern, bow: Bow, lights: int, work: Work) -> float:
 @callee
 def fold_within(
     curved: bool, beyond: float, pattern: Pattern, frame: np.void, view: View, lights: NDArray[np.void], work: Work
-) -> tuple[int, int, Reach]:
+) -> tuple[int, int, float, Reach]:
     """Fill `work.near` with what stands for all grooves within reach, where they are many periods of one family.
 
-    How many rows, how many entries of `work.sums`, and the frame; no rows where all is left as it is. beyond: so much
-    farther along T must the family go on, for light from facet to facet.
+    How many rows, how many entries of `work.sums`, what bent paths leave, as `pick`, and the frame; no rows where all
+    is left as it is. beyond: so much farther along T must the family go on, for light from facet to facet.
     """
     none = Reach(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     which = crowded(pattern, view)
     if which < 0:
-        return 0, 0, none
+        return 0, 0, 0.0, none
     family = pattern.families[which]
     tx, ty, _ = family_at(family, view.p, view.q)
     eye_w = frame.eye[2]
@@ -478,10 +501,10 @@ def fold_within(
     wider = wider_of(pattern, frame, eye_p / eye_w, eye_q / eye_w) if curved else 1.0
     r = reach_along(False, wider, pattern, view, eye_p / eye_w, eye_q / eye_w, tx, ty, work)
     wide = longer(r, beyond)
-    straight = runs_straight(family, view, r if family.radius > 0.0 else wide)
-    if not straight or not is_alone(pattern, which, view, wide, work.found):
-        return 0, 0, none
+    crooked = bends_by(family, view, r if family.radius > 0.0 else wide)
+    if crooked > CROOKED or not is_alone(pattern, which, view, wide, work.found):
+        return 0, 0, 0.0, none
     turn_lights(curved, frame, view, -ty, tx, lights, False, work)
     eye_d = eye_q * tx - eye_p * ty
     rows, entries = fold(pattern, family, view, r, eye_d, eye_w, work.light, work.near, work.sums, work.rims)
-    return rows, entries, r
+    return rows, entries, crooked, r

@@ -24,7 +24,7 @@ from renderer.kernel import fixed, leaf
 from renderer.tables import FOOTPRINT, SCALE_CONSTANT, Camera, Floats, Pattern
 
 CAPACITY = fixed(2048)  # pieces near a domain
-CHORD = 8.0  # how far chords leave arcs, in widths of the footprint and tolerances; the error is about a fifth of it
+CHORD = 4.0  # how far chords leave arcs, in widths of the footprint and tolerances; the error is about a fifth of it
 BLOCKS = (8, 2, 0)  # the faces are made for squares of so many pixels, aligned on the screen; 0: for the footprint
 BOWED_MARGIN = 0.1  # of a domain over a curved base, on either side: rays are straightened again once it is there
 FEW = (16, 48, 2048)  # while no more pieces than this are near

@@ -24,7 +24,7 @@ from renderer.kernel import leaf
 from renderer.tables import CORNER, FLAT, PROFILE, SCALE_CONSTANT, SCALE_SINE, Floats, Pattern
 
 STRIPS, WALLS, CHUNKS = 4096, 4096, 512  # room for those of one surface
-BEND = 0.15  # a chord turns by no more, radians
+BEND = 0.1  # a chord turns by no more, radians
 
 CHUNK = np.dtype(
     [
@@ -203,7 +203,7 @@ def divide(
         # Chords whose mean leaves the arc by nothing, and their ends and middles by about half of this each. Powers of
         # two of them, so that those of rings side by side lie side by side: else gaps open between rings that touch.
         turn = min(math.sqrt(12.0 * tolerance / (size + piece.half)), BEND)
-        step = piece.length * 2.0 ** -max(math.ceil(math.log2(piece.length / (turn * size)) - 0.5), 0.0)
+        step = piece.length * 2.0 ** -max(math.ceil(math.log2(piece.length / (turn * size))), 0.0)
         if groove.scale_kind == SCALE_SINE:  # chunks as long as one another
             step = min(step, bends(pattern, groove, piece, 0.0, piece.length, tolerance))
             step = piece.length / math.ceil(piece.length / step - 1e-9)

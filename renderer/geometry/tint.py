@@ -23,9 +23,11 @@ from renderer.shading import Vector, ambient, lit_by, normal_to_world, to_world,
 from renderer.tables import Floats, Lighting, Pattern
 
 FLAT = 5e-4  # what changes by less, to second order in parts of white, is looked at once: wrong by 1/24 of it
-CUBIC = 1.0 / 1440.0  # 3 / 4320 of f'''' h^4 by Gauss's two places, where f is a peak: 3 f''^2 / f
-WIDE = 4.0  # a footprint over twice the width of a lobe, squared
+LIVELY = 0.2  # what changes by more is looked at in the middle, too, to tell how wrong Gauss's places are:
+CUBIC = 0.4  # by 3 / 4320 f'''' h^4 where the middle is wrong by f'' h^2 / 24, and f is a peak: 3 f''^2 / f
+WIDE = 36.0  # a footprint over six times the width of a lobe, squared: the lobe might stand between these places
 GAUSS = 0.5 / math.sqrt(3.0)
+CLOSEST = 1e-4  # to the centre of curvature, in radii
 LEAST = 1e-9  # parts of a footprint as small as this lie anywhere
 
 
@@ -59,9 +61,8 @@ def liven(
     view: View, lights: NDArray[np.void], change: Floats,
 ) -> tuple[float, float]:  # fmt: skip
     """Write how much colours change along a footprint under each light, and under the sky, to second order, in parts of
-    white. Gives what the places that they are looked at leave out of it: parts of white, and parts of what is seen.
-
-    A lobe that is wide enough to be met by one of them is wrong by a part of what it is there.
+    white. Gives the footprint's width in lobes, squared, the most; and of groups that are looked at once each what that
+    leaves out, in parts of what is seen.
 
     still: nothing turns but normals, by the angle `bend`, of which `sway` across the grooves. plain: nor does it matter
     from where they are seen. sharp, bright: the most of `sharpness` and `peak`. groups: so many periods stand for all,
@@ -78,16 +79,18 @@ def liven(
         most = max(most, change[l])
         across = max(across, sharp * (turn + sway) ** 2)
     change[sky] = (eye + bend) ** 2
-    most, across = most / bright, across / bright
-    part = CUBIC * most * most
-    if groups > 1:
-        part += across / (24.0 * groups * groups)
-    return (0.0, part) if most <= WIDE else (min(part * bright, 1.0), 0.0)
+    return most / bright, across / bright / (24.0 * groups * groups) if groups > 1 else 0.0
+
+
+@leaf
+def bent_at(curvature: float, b: float) -> float:
+    """The curvature of what runs beside a path, so far along B; next to the centre of curvature no more than a lot."""
+    return curvature / max(1.0 - curvature * b, CLOSEST)
 
 
 @leaf
 def facet_at(i: int, pattern: Pattern, work: Work) -> tuple[int, int, float]:
-    """Of facet i: the row of `work.tint` for it, its material's slot, and its path's curvature the way of T."""
+    """Of facet i: the row of `work.tint` for it, its material's slot, and its path's curvature towards B."""
     if work.owner[i] < 0:
         return -1, 0, 0.0
     near = work.near[work.owner[i]]
@@ -126,9 +129,9 @@ def tint_over(
     i: int, light: int, low: float, high: float, change: float, folded: bool, once: bool, gathers: bool, curved: bool,
     folded_at: float, places_b: Floats, heights: Floats, turn: float, spread: Spread, frame: np.void, view: View,
     r: Reach, eye_d: float, eye_h: float, lighting: Lighting, material: np.void, albedo: Floats, work: Work,
-) -> Vector:  # fmt: skip
+) -> tuple[float, float, float, float]:  # fmt: skip
     """The mean of what facet i, -1 for the plane, sends to the eye where it is seen between `low` and `high` on the
-    base line: as `sent`.
+    base line, as `sent`; and about how wrong that is, the sum of channels.
 
     The eye sees its points at `places_b` and `heights`. change: as `liven` has written for that light. folded: it
     stands for copies; once: all over the footprint.
@@ -150,11 +153,12 @@ def tint_over(
         part = (high - low) / (math.sqrt(12.0) * spread.across) if spread.across > 0.0 else 0.0
         if once or change * part * part > FLAT:
             n_across = 2
-    red = green = blue = 0.0
-    for k in range(n_across):
-        side = 0.0 if n_across == 1 else 2.0 * k - 1.0
+    red = green = blue = off = 0.0
+    count = n_across * n_along
+    for k in range(n_across + (1 if change > LIVELY else 0)):
+        side = 0.0 if n_across == 1 or k == n_across else 2.0 * k - 1.0
         x = middle + side * aside
-        b, w, across, up = x, 0.0, 1.0, 0.0
+        b, w, across, up, bends = x, 0.0, 1.0, 0.0, 0.0
         if i >= 0:
             u = fraction_at(
                 x, places_b[i], heights[i], places_b[i + 1], heights[i + 1], eye_d, frame.eye[2], eye_h
@@ -162,14 +166,19 @@ def tint_over(
             u = min(max(u, 0.0), 1.0)
             across, up = work.b[i + 1] - work.b[i], work.w[i + 1] - work.w[i]
             b, w = work.b[i] + u * across, work.w[i] + u * up
+            bends = bent_at(turn, b - work.near[work.owner[i]].axis) if turn != 0.0 else 0.0
         if once:
             x = b = side * spread.across
-        for j in range(n_along):
-            t = r.eye_t * w + spread.slant * x + (0.0 if n_along == 1 else (2.0 * j - 1.0) * spread.along)
+        for j in range(1 if k == n_across else n_along):
+            way = 0.0 if n_along == 1 or k == n_across else 2.0 * j - 1.0
+            t = r.eye_t * w + spread.slant * x + way * spread.along
             colour = sent(
-                light, gathers, curved, x if once else b - folded_at, b, t, w, across, up, turn, frame, view, r,
+                light, gathers, curved, x if once else b - folded_at, b, t, w, across, up, bends, frame, view, r,
                 lighting, material, albedo,
             )  # fmt: skip
-            red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
-    count = n_across * n_along
-    return red / count, green / count, blue / count
+            if k < n_across:
+                red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
+                continue
+            one, mean = colour[0] + colour[1] + colour[2], (red + green + blue) / count
+            off = CUBIC * (mean - one) ** 2 / max(mean, one, 1e-300)
+    return red / count, green / count, blue / count, off

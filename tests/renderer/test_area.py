@@ -163,6 +163,18 @@ SLOT = [
 UNDERCUT = PROFILES | {"stacked": STACKED, "slot": SLOT}
 
 
+def test_no_gaps_between_rings_that_touch(plate: Plate, picture: Shot) -> None:
+    """Chords of neighbours run side by side. Each ring's own number of them opened gaps, where the plane would be seen
+    that no ray meets: pictures were too bright everywhere by a part of the tolerance."""
+    vee = [[-0.01, 0.0], [0.0, -0.012], [0.01, 0.0]]
+    rings = ring(0.3, vee, repeat={"type": "concentric", "count": 30, "step": 0.02})
+    scene = plate([rings], lights=[sun(1, 0.45, -0.4)], camera={"fov": 20})
+    fine, rough = (picture(scene, method="area", tolerance=tolerance).radiance for tolerance in (1e-4, 0.01))
+    off = (rough - fine).astype(np.float64)
+    assert abs(off.mean()) < 0.0004
+    assert np.quantile(np.abs(off), 0.95) < 0.01
+
+
 @pytest.mark.parametrize("name", UNDERCUT)
 def test_what_overhangs_alone(name: str, plate: Plate, picture: Shot) -> None:
     """Parallel grooves, corners and ends of both kinds. Nothing else is exact to rounding but a corner's mitre, which

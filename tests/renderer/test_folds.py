@@ -200,7 +200,7 @@ def looked_at(plate: Plate, check: Check, kind: str, count: int, profile: list[l
         frame = seen.frames[footprint["frame"]]
         view = towards(footprint, frame, camera)
         meet(False, pattern, frame, view, footprint["blocked"], lights, work)
-        rows, entries, _ = fold(False, 0.0, pattern, frame, view, lights, work)
+        rows, entries, _, _ = fold(False, 0.0, pattern, frame, view, lights, work)
         found.append(rows + entries if rows else -1)
     return found
 
