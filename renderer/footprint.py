@@ -22,7 +22,7 @@ LEVELS = 2, 7  # splits of a pixel on an edge, by tolerance
 CROWD = 5, 8  # but after the first number of splits, only while an edge meets no more than the second of parts a row
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
 TURN = 0.25, 2  # ... nor by more than 1 - cosine = TURN * tolerance (measured); up to so many splits for that alone
-MESH_TURN = 10.0, 5  # ... on meshes by MESH_TURN * tolerance^2: the edges of triangles err as normals turn there
+MESH_TURN = 2.5, 6  # ... on meshes by MESH_TURN * tolerance^2: the edges of triangles err as normals turn there
 CLOSE = 1e-3  # of a radius: no other object stands so near
 WITHIN = 1.0 - 1e-6  # of a cylinder's height: a place at its rim counts as one of its side
 OPEN = 1.5  # times the depth of the grooves: a footprint's corners may be seen at less slope than its centre
