@@ -36,7 +36,8 @@ SIZE = (320, 240)
 QUALITY = 88  # of the JPEG pictures
 KB = 1024
 LADDER = (4, 16, 64, 256)  # samples of geometry's curve
-AUTO = (Setting("auto", 64), Setting("auto", 4), Setting("auto", 16))  # where rays go from object to object
+# Where rays go from object to object.
+AUTO = tuple(Setting("auto", 4096, tolerance=tolerance) for tolerance in (0.01, 0.05, 0.02))
 
 INTRODUCTION = """# The report's figures again
 

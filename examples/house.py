@@ -11,6 +11,7 @@ from typing import Any
 Json = dict[str, Any]
 
 WIDE, DEEP, EAVES, RIDGE = 5.0, 4.0, 2.6, 4.4
+BEHIND = 0.01
 OVERHANG = 0.35
 SLOPE = math.degrees(math.atan2(RIDGE - EAVES, DEEP / 2))
 
@@ -115,11 +116,15 @@ def laid(wide: float, high: float) -> Json:
 
 
 def end_wall() -> str:
-    """The wall under the gable as OBJ, seen from +x, with uv: 0 to 1 over DEEP by RIDGE."""
-    corners = [(-DEEP / 2, 0.0), (DEEP / 2, 0.0), (DEEP / 2, EAVES), (0.0, RIDGE), (-DEEP / 2, EAVES)]
+    """The wall under the gable as OBJ, seen from +x, with uv: 0 to 1 over DEEP by RIDGE.
+
+    It ends behind the front wall: edges in the same plane would be neither's.
+    """
+    side = DEEP / 2 - BEHIND
+    corners = [(-side, 0.0), (side, 0.0), (side, EAVES), (0.0, RIDGE), (-side, EAVES)]
     lines = ["# the end wall of a house; written by make.py"]
-    lines += [f"v {WIDE / 2} {y} {z}" for y, z in corners]
-    lines += [f"vt {y / DEEP + 0.5} {z / RIDGE:.9f}" for y, z in corners]
+    lines += [f"v {WIDE / 2 - BEHIND:g} {y:g} {z:g}" for y, z in corners]
+    lines += [f"vt {y / DEEP + 0.5:.9f} {z / RIDGE:.9f}" for y, z in corners]
     return "\n".join([*lines, "f 1/1 2/2 3/3", "f 1/1 3/3 5/5", "f 5/5 3/3 4/4"]) + "\n"
 
 
@@ -189,5 +194,5 @@ def house() -> Json:
         "materials": MATERIALS,
         "patterns": patterns(),
         "objects": objects,
-        "render": {"method": "auto", "samples": 36, "bounces": 1},
+        "render": {"method": "auto", "samples": 1024, "bounces": 1, "tolerance": 0.01},
     }

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from renderer.geometry.curve import is_curved
 from renderer.geometry.query import nearby
-from renderer.geometry.random import jitter, seed_of
+from renderer.geometry.random import PLACE, drawn
 from renderer.geometry.rays import follow
 from renderer.geometry.shapes import local
 from renderer.geometry.shell import LEVEL, ahead, chart, entered, from_world, is_round
@@ -28,25 +28,25 @@ from renderer.tables import BARE, MESH, RAY, RECTANGLE, Camera, Floats, Ints, Li
 
 @kernel
 def look(
-    across: int, down: int, bounces: int, seed: int, footprints: NDArray[np.void], chosen: NDArray[np.int64],
+    numbers: NDArray[np.int64], bounces: int, seed: int, footprints: NDArray[np.void], chosen: NDArray[np.int64],
     camera: Camera, rays: NDArray[np.void],
 ) -> None:  # fmt: skip
-    """The RAYs of the camera through the footprints `chosen` (n,), each in across by down strata: (n * across * down,).
+    """Write the RAYs of the camera through the footprints `chosen` (n,), of each those of `numbers` (n, 2) as `csg`
+    takes them.
 
     bounces: as many as are followed from what they meet.
     """
-    each = across * down
+    made = 0
     for j in range(len(chosen)):
         footprint = footprints[chosen[j]]
-        state = seed_of(seed, footprint.x, footprint.y)
-        for i in range(each):
-            state, ju = jitter(state)
-            state, jv = jitter(state)
-            x = footprint.x + footprint.size * (i % across + ju) / across
-            y = footprint.y + footprint.size * (i // across + jv) / down
-            ray = rays[j * each + i]
+        first, stop = numbers[j, 0], numbers[j, 1]
+        for i in range(first, stop):
+            _, u, v = drawn(i, PLACE, seed, footprint.x, footprint.y)
+            x, y = footprint.x + footprint.size * u, footprint.y + footprint.size * v
+            ray = rays[made]
+            made += 1
             for c in range(3):
-                ray.origin[c], ray.through[c] = camera.origin[c], 1.0 / each
+                ray.origin[c], ray.through[c] = camera.origin[c], 1.0 / (stop - first)
                 ray.way[c] = camera.corner[c] + x * camera.right[c] + y * camera.down[c]
             way = unit((ray.way[0], ray.way[1], ray.way[2]))
             ray.way[0], ray.way[1], ray.way[2] = way

@@ -1,6 +1,7 @@
 """Method `csg`: rays against the spans of added and removed material (003), n stratified samples a footprint.
 
-Right for every case, however slow. `auto` sends it what no cheaper method takes, with a tolerance. Then a footprint
+Right for every case, however slow. `auto` sends it what no cheaper method takes. Where light is followed further, or
+another object may stand in its way, it is told which samples to take (`sampling`); else a footprint
 near one or two grooves whose corners and first few samples all fall on one facet, all lit alike, is left at those: what
 one straight edge cuts off a footprint has one of its corners in it. Any other gets as many as bring the predicted error
 within the tolerance: that of a mean of strata, whose variances the differences of neighbours tell. A part of a pixel,
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from renderer.geometry.curve import is_curved, turned, unsure
 from renderer.geometry.query import find, nearby
-from renderer.geometry.random import drawn, jitter, seed_of
+from renderer.geometry.random import PLACE, drawn, jitter, seed_of
 from renderer.geometry.rays import follow
 from renderer.geometry.shell import STRAY, is_round, is_shaded, placed, raised, seen_from
 from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_ray, thin_of
@@ -48,25 +49,26 @@ BENT = 0.3  # ... by this part of its slope
 UNSEEN = 0.1  # of white over n: what the parts that no sample has met may be
 STRATIFIED = 0.72  # of what sets neighbours apart is a stratum's own error: an edge between two counts (measured)
 SURE = 0.5  # how much of the tolerance the standard error may take
-EDGE = 0.2  # twice a quarter over the square root of six: the error of a pixel's samples, in parts of n^-3/4
+EDGE = 0.2  # twice a quarter over the square root of six: what n samples of an edge err by, in parts of n^-3/4
 BOWED = 0.15  # so far chords may be from rays on round shapes, times the tolerance, in pixels' least widths
 SHADED = 4.0  # ... and those of shadows this times as far
 
 
 @kernel
 def csg(
-    samples: int, bounces: int, indirect: bool, tolerance: float, sparing: bool, seed: int, leaving: NDArray[np.void],
-    gone: NDArray[np.int64], asking: NDArray[np.void], asked: NDArray[np.int64], pattern: Pattern,
-    footprints: NDArray[np.void], chosen: NDArray[np.int64], objects: NDArray[np.void], frames: NDArray[np.void],
-    camera: Camera, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32],
-    albedo: NDArray[np.float64], radiance: NDArray[np.float64], method: NDArray[np.uint8],
+    numbers: NDArray[np.int64], bounces: int, indirect: bool, tolerance: float, sparing: bool, seed: int,
+    leaving: NDArray[np.void], gone: NDArray[np.int64], asking: NDArray[np.void], asked: NDArray[np.int64],
+    pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64], objects: NDArray[np.void],
+    frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void],
+    slots: NDArray[np.int32], albedo: NDArray[np.float64], radiance: NDArray[np.float64], method: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
-    samples: at least so many a pixel, in a grid of strata, where the tolerance is 0; else as many as that asks for,
-    which is the error relative to a white surface in the same light. sparing: NOT_MINE, where that is more than the
-    most it may take. bounces: how often light is followed from facet to facet, by no more than `samples` rays a
-    footprint; indirect: that light alone, added to what is there. leaving: room for each sample's RAY (`rays.follow`),
+    numbers: (n, 2) the samples to take of each, from the first to before the last, their mean; they are spread evenly,
+    the first n for every n. Where there are none, as many as the tolerance asks for, which is the error relative to a
+    white surface in the same light, with no bounces. sparing: NOT_MINE, where that is more than the most it may take.
+    bounces: how often light is followed from facet to facet; indirect: that light alone, added to what is there.
+    leaving: room for each sample's RAY (`rays.follow`),
     if others are to meet them; `gone` (1,) is how many there are. asking, asked: the same for light that another object
     may keep from where a footprint is `torn`; its `number` is the light's. slots: rows of `materials` for the pattern's
     facets, the object's own first.
@@ -81,15 +83,16 @@ def csg(
     high, low = pattern.height, -pattern.depth
     thin = thin_of(pattern)
     above = np.zeros(MOST)
-    for index in chosen:
+    told = len(numbers) > 0
+    for turn in range(len(chosen)):
+        index = chosen[turn]
         footprint = footprints[index]
         frame = frames[footprint.frame]
         obj = objects[frame.object]
         view = view_of(footprint, frame, camera)
         curved, rounded = is_curved(frame), is_round(obj, frame) or footprint.open == BESIDE
         stray = strayed = STRAY * (high - low)  # of sight and of light
-        fine = tolerance if tolerance > 0.0 else EDGE * math.pow(samples, -0.75)
-        near = BOWED * fine * thinnest(view, 1.0) / footprint.size if rounded else math.inf
+        near = BOWED * tolerance * thinnest(view, 1.0) / footprint.size if rounded else math.inf
         if near < stray:
             stray, strayed = near, min(strayed, SHADED * near)
         dw = frame.eye[2]
@@ -127,22 +130,20 @@ def csg(
         if not apart and footprint.open != BESIDE:
             shared = find(pattern, found, fp0 - margin, fq0 - margin, fp1 + margin, fq1 + margin, SHARED)
 
-        share = samples if tolerance > 0.0 else max(int(math.ceil(samples * footprint.size * footprint.size)), 1)
-        across = int(math.ceil(math.sqrt(share)))
-        down = (share + across - 1) // across
-        part = min(footprint.size, 1.0)
+        part = math.sqrt(footprint.weight)
         ease = math.sqrt(part)  # half of what independent errors allow: few samples tell little of their own error
         begin = max(int(math.ceil(FIRST * part)), PROBE)
         most = max(int(math.ceil(MOST * ease)), begin)
-        if bounces > 0:  # rays from facet to facet take their time
-            most = max(across, begin)
+        across = down = begin
         corners = 0
-        target = bright = 0.0
-        if tolerance > 0.0:
-            across = down = begin
-            if 0 <= shared <= FEW and bounces == 0:
-                across, down, corners = PROBE, PROBE, 4
-            target = tolerance
+        if 0 <= shared <= FEW:
+            across, down, corners = PROBE, PROBE, 4
+        target, bright = tolerance, 1.0
+        first, stop = 0, 0
+        if told:
+            first, stop = numbers[turn, 0], numbers[turn, 1]
+            across, down, corners = stop - first, 1, 0
+        else:
             bends = curved and not rounded
             if bends and straightened(pattern, frame, view.p, view.q, footprint.blocked, lights) > BENT:
                 target = max(tolerance, GRAINY)
@@ -159,10 +160,12 @@ def csg(
             last = 0.0
             alike = True
             first_facet, first_found, first_lit = 0, 0, np.uint64(0)
-            for i in range(-corners, across * down):  # the corners are looked at, not counted
+            for i in range(first - corners, first + across * down):  # the corners are looked at, not counted
                 before = red + green + blue
                 if i < 0:
                     u, v = float((-1 - i) & 1), float((-1 - i) >> 1)
+                elif told:
+                    _, u, v = drawn(i, PLACE, seed, footprint.x, footprint.y)
                 else:
                     state, ju = jitter(state)
                     state, jv = jitter(state)
@@ -287,7 +290,7 @@ def csg(
                     red = green = blue = 0.0
                 elif i >= 0:
                     taken += 1
-                    if tolerance > 0.0:
+                    if not told:
                         value = (red + green + blue - before) / 3.0
                         column = i % across
                         if column > 0:
@@ -296,7 +299,7 @@ def csg(
                             unlike += (value - above[column]) ** 2
                         above[column] = last = value
             looked += taken
-            if tolerance <= 0.0:
+            if told:
                 break
             if corners == 0 or alike:
                 pairs = across * (down - 1) + down * (across - 1)
@@ -327,7 +330,7 @@ def csg(
         radiance[index, 0] += red / taken
         radiance[index, 1] += green / taken
         radiance[index, 2] += blue / taken
-        radiance[index, 3] += error / SURE * ease
+        radiance[index, 3] += error / SURE * ease / bright if bright > 0.0 else 0.0
         if curved and not rounded:
             radiance[index, 3] += unsure(frame, max(p0 - fp0, fp1 - p1, q0 - fq0, fq1 - q1, pattern.width))
         radiance[index, 4] += float(looked) * max(shared, 1)

@@ -44,7 +44,7 @@ def develop(
     image[:] = 0.0
     methods[:] = 0
     for i in range(len(footprints)):
-        pixel, weight = footprints[i].pixel, footprints[i].size * footprints[i].size
+        pixel, weight = footprints[i].pixel, footprints[i].weight
         covered[pixel] += weight
         methods[pixel] = max(methods[pixel], method[i])
         for c in range(4):

@@ -20,6 +20,7 @@ from renderer.tables import BESIDE, CYLINDER, FOOTPRINT, FRAME, HIT, MESH, RECTA
 
 LEVELS = 2, 7  # splits of a pixel on an edge, by tolerance
 CROWD = 5, 8  # but after the first number of splits, only while an edge meets no more than the second of parts a row
+LAST = 0.25  # of such a square's side is looked at, about a point that is known to be on this side of the edge
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
 TURN = 0.25, 2  # ... nor by more than 1 - cosine = TURN * tolerance (measured); up to so many splits for that alone
 MESH_TURN = 2.5, 6  # ... on meshes by MESH_TURN * tolerance^2: the edges of triangles err as normals turn there
@@ -129,7 +130,7 @@ def footprints(
         middle_rays = rays(camera, x + size * u, y + size * v)
         middle = shapes.hits(camera.origin, middle_rays)
         mask = shapes.blocked(camera.origin, middle_rays, middle, lights)
-        smooth = last
+        smooth = last.copy()
         if level < finest:
             bends = (middle["object"] >= 0) & (shapes.objects["shape"][middle["object"]] == MESH)
             limits = ((MESH_TURN, tolerance * tolerance), (TURN, tolerance))  # an edge meets 2^level of 4^level parts
@@ -152,7 +153,9 @@ def footprints(
                 mask[which] = shapes.blocked(starts, ways, hits, lights)
         smooth |= beside
         keep = np.flatnonzero(smooth & (middle["object"] >= 0))
-        done.append(_framed(shapes, eyes, flat, pixel, x, y, size, middle_rays, middle, mask, beside, keep))
+        within = size * np.where(last & ~beside, LAST, 1.0)
+        place = x + u * (size - within), y + v * (size - within), within
+        done.append(_framed(shapes, eyes, flat, pixel, *place, size, middle_rays, middle, mask, beside, keep))
         split = ~smooth
         if not split.any():
             break
@@ -262,14 +265,15 @@ def _inside(x: Floats, y: Floats, seed: int) -> Floats:
 
 
 def _framed(
-    shapes: Shapes, eyes: Floats, flat: dict[int, NDArray[np.void]], pixel: Ints, x: Floats, y: Floats, size: float,
-    directions: Floats, hits: NDArray[np.void], mask: NDArray[np.uint64], beside: NDArray[np.bool_],
+    shapes: Shapes, eyes: Floats, flat: dict[int, NDArray[np.void]], pixel: Ints, x: Floats, y: Floats, size: Floats,
+    side: float, directions: Floats, hits: NDArray[np.void], mask: NDArray[np.uint64], beside: NDArray[np.bool_],
     keep: NDArray[np.int64],
 ) -> Footprints:  # fmt: skip
-    """The footprints among the squares (n,) that `keep` lists, with frames; those of a rectangle share one."""
+    """The footprints among the squares (n,) that `keep` lists, in parts of a pixel with this side, with frames; those
+    of a rectangle share one."""
     out = np.zeros(len(keep), FOOTPRINT)
     out["pixel"], out["x"], out["y"], out["blocked"] = pixel[keep], x[keep], y[keep], mask[keep]
-    out["size"], out["open"] = size, np.where(beside[keep], BESIDE, 0)
+    out["size"], out["weight"], out["open"] = size[keep], side * side, np.where(beside[keep], BESIDE, 0)
     shared: list[NDArray[np.void]] = []
     rest = np.ones(len(keep), np.bool_)
     seen = hits["object"][keep]

@@ -24,7 +24,7 @@ import schema
 from renderer import CACHE, body, bounce, film, relief, shading
 from renderer.area import area_sampling, in_blocks
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
-from renderer.csg import EDGE, MOST, PROBE, csg
+from renderer.csg import EDGE, MOST, csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
 from renderer.geometry.strips import STRIPS
@@ -32,6 +32,7 @@ from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
+from renderer.sampling import EVEN, sampled, whiteness
 from renderer.tables import BARE, BASE, CSG, MESH, NOT_MINE, RAY, Floats, Lighting, Pattern
 from renderer.trace import Truth
 
@@ -130,7 +131,8 @@ class Frame:
         grooved = seen.frames["grooved"][seen.footprints["frame"]] != 0
         spent: dict[str, float] = {}
         within = seen.frames["within"][seen.footprints["frame"]] != 0
-        self._look_out(seen, np.flatnonzero(within), radiance, method, spent)
+        if within.any():
+            self._look_out(seen, np.flatnonzero(within), radiance, method, spent)
         for row in np.unique(of[~within]):
             index = scene.objects["pattern"][row]
             carries = grooved & (index >= 0) & (settings.method != "base")
@@ -156,19 +158,6 @@ class Frame:
         """The error that analytic methods may leave on an object's curved base. Of meshes rays do not know more."""
         return max(self.settings.tolerance, ROUGH if self.scene.objects["shape"][row] == MESH else 0.0)
 
-    def _samples(self, bounces: int) -> int:
-        """Of a pixel whose rays tell no error. Of n^2 strata an edge crosses n, and leaves a sixth of its contrast
-        squared in each: with no bounces, a quarter of white is within `auto`'s tolerance, at two deviations."""
-        settings = self.settings
-        if settings.method != "auto" or bounces > 0:
-            return settings.samples
-        return min(max(math.ceil(math.pow(EDGE / settings.tolerance, 4.0 / 3.0)), PROBE**2), MOST**2)
-
-    def _strata(self) -> tuple[int, int]:
-        """Of a footprint's samples, across and down."""
-        across = math.ceil(math.sqrt(self.settings.samples))
-        return across, math.ceil(self.settings.samples / across)
-
     def _put(self, tile: Tile, image: Floats, methods: NDArray[np.uint8]) -> None:
         rows, columns = slice(tile.y, tile.y + tile.height), slice(tile.x, tile.x + tile.width)
         picture = image.reshape(tile.height, tile.width, 5)
@@ -189,13 +178,13 @@ class Frame:
         part = Part(row, pattern, seen, scene.lighting, radiance, method, spent)
         sampled = (seen.footprints["torn"][chosen] != 0) | (seen.footprints["open"][chosen] != 0)
         if sampled.any():
-            self._sample(part, chosen[sampled], 0.0, settings.bounces)
+            self._sample(part, chosen[sampled], settings.bounces)
             chosen = chosen[~sampled]
         if settings.bounces == 0 or settings.method == "relief":
             self._direct(part, chosen)
             return
         if settings.method == "csg":
-            self._sample(part, chosen, 0.0, settings.bounces)
+            self._sample(part, chosen, settings.bounces)
             return
         if not self.rays_go_on:
             start = time.perf_counter()
@@ -207,7 +196,7 @@ class Frame:
             lights, sky, around, _ = scene.lighting
             alone = Lighting(lights, np.zeros(3), left=float(sky.mean()) + around.white)
             self._direct(part._replace(lighting=alone), chosen)
-            self._sample(part, chosen, settings.tolerance, settings.bounces, indirect=True)
+            self._sample(part, chosen, settings.bounces, indirect=True)
 
     def _of(self, part: Part) -> tuple[Any, ...]:
         """What all kernels take after the footprints."""
@@ -225,14 +214,45 @@ class Frame:
         scene, settings = self.scene, self.settings
         start = time.perf_counter()
         method[chosen] = CSG
-        across, down = self._strata()
-        batch = max(RAYS // (across * down), 1)
-        for first in range(0, len(chosen), batch):
-            some = chosen[first : first + batch]
-            rays = np.zeros(len(some) * across * down, RAY)
-            bounce.look(across, down, settings.bounces, settings.seed, seen.footprints, some, scene.camera, rays)
-            self._meet(rays, seen.footprints, radiance)
+
+        def look(which: NDArray[np.int64], numbers: NDArray[np.int64], copies: Footprints, found: Floats) -> None:
+            rays = np.zeros(np.diff(numbers).sum(), RAY)
+            bounce.look(numbers, settings.bounces, settings.seed, copies.footprints, which, scene.camera, rays)
+            self._meet(rays, copies.footprints, found)
+
+        self._converge(seen, chosen, 1, settings.bounces, look, radiance)
         spent["bounce"] = spent.get("bounce", 0.0) + time.perf_counter() - start
+
+    def _converge(
+        self, seen: Footprints, chosen: NDArray[np.int64], rays: int, bounces: int, sample: Callable[..., None],
+        radiance: Floats,
+    ) -> None:  # fmt: skip
+        """Add to footprints' radiance, error and cost what samples find; `auto` takes as many as the tolerance asks.
+
+        sample: adds the mean of the samples `numbers` (n, 2) to the radiance of each of the first n footprints of a
+        table; it needs room for so many `rays` a sample.
+        """
+        settings, footprints = self.settings, seen.footprints[chosen]
+        adaptive = settings.method == "auto"
+
+        def draw(which: NDArray[np.int64], numbers: NDArray[np.int64]) -> Floats:
+            found = np.zeros((len(which), 5))
+            ends = np.flatnonzero(np.diff(np.cumsum(np.diff(numbers)[:, 0] * rays) // RAYS)) + 1
+            for some in np.split(np.arange(len(which)), ends):
+                copies = seen._replace(footprints=footprints[which[some]])
+                part = np.zeros((len(some), 5))
+                sample(np.arange(len(some)), numbers[some], copies, part)
+                found[some] = part
+            return found[:, :3]
+
+        made = sampled(
+            footprints["pixel"], footprints["weight"],
+            whiteness(seen.footprints, chosen, seen.frames, self.scene.camera, self.scene.lighting),
+            settings.tolerance if adaptive else 0.0, MOST**2 if adaptive and bounces == 0 else settings.samples, draw,
+        )  # fmt: skip
+        radiance[chosen, :3] += made.mean
+        radiance[chosen, 3] += made.error
+        radiance[chosen, 4] += made.taken
 
     def _meet(self, rays: NDArray[np.void], footprints: NDArray[np.void], radiance: Floats) -> None:
         """Add what RAYs see to their footprints' radiance."""
@@ -248,7 +268,7 @@ class Frame:
         rest = self._of(part)
         rough = self._rough(part.row)
         if settings.method == "csg" and pattern is not BARE:
-            self._sample(part, chosen, 0.0)
+            self._sample(part, chosen)
             return
         start = time.perf_counter()
         if isinstance(self.model, Textures) and pattern is not BARE:
@@ -274,7 +294,7 @@ class Frame:
             part.took("lines" if settings.method == "lines" else "area", start)
             left = left[method[left] == NOT_MINE]
         if len(left) and settings.method == "auto":
-            self._sample(part, left, settings.tolerance, sparing=True)
+            self._sample(part, left, sparing=True)
             left = in_blocks(footprints, left[method[left] == NOT_MINE])
             start = time.perf_counter()  # with as many strips as there is room for, where samples do not do
             area_sampling(
@@ -283,39 +303,49 @@ class Frame:
             part.took("area", start)
             left = left[method[left] == NOT_MINE]
         if len(left):
-            self._sample(part, left, settings.tolerance)
+            self._sample(part, left)
 
     def _sample(
-        self, part: Part, chosen: NDArray[np.int64], tolerance: float, bounces: int = 0, *, indirect: bool = False,
-        sparing: bool = False,
+        self, part: Part, chosen: NDArray[np.int64], bounces: int = 0, *, indirect: bool = False, sparing: bool = False,
     ) -> None:  # fmt: skip
         """Shade footprints by `csg`; rays go from facet to facet, and on to other objects if there are any.
 
-        indirect: add what these bring to what is there. Of what is torn or open, all of `chosen` or
-        nothing.
+        indirect: add what these bring to what is there. Of what is torn or open, all of `chosen` or nothing.
         """
         settings, footprints = self.settings, part.seen.footprints
         goes = self.rays_go_on and (bounces > 0 or bool(footprints["open"][chosen].any()))
         asks = len(part.lighting.lights) if not indirect and footprints["torn"][chosen].any() else 0
-        if goes or asks:
-            tolerance = 0.0
-        samples = self._samples(bounces)
-        share = np.ceil(samples * footprints["size"][chosen] ** 2)
-        room = np.ceil(np.sqrt(share)).astype(np.int64) ** 2  # as many strata as a footprint has, and a few more
-        ends = np.flatnonzero(np.diff(np.cumsum(room * (goes + asks)) // RAYS)) + 1
-        for some, strata in zip(np.split(chosen, ends), np.split(room, ends), strict=True):
+        if settings.method != "csg" and not goes and not asks and bounces == 0:
             start = time.perf_counter()
-            leaving, gone = np.zeros(strata.sum() * goes, RAY), np.zeros(1, np.int64)
-            asking, asked = np.zeros(strata.sum() * asks, RAY), np.zeros(1, np.int64)
+            none = np.zeros(0, RAY), np.zeros(1, np.int64)
             csg(
-                samples, bounces, indirect, tolerance, sparing, settings.seed, leaving, gone, asking, asked,
-                part.pattern, footprints, some, self.scene.objects, *self._of(part),
+                np.zeros((0, 2), np.int64), 0, False, settings.tolerance, sparing, settings.seed, *none, *none,
+                part.pattern, footprints, chosen, self.scene.objects, *self._of(part),
+            )  # fmt: skip
+            part.took("csg", start)
+            return
+        fine = settings.tolerance if settings.method == "auto" else EDGE * math.pow(settings.samples, -EVEN)
+
+        def sample(which: NDArray[np.int64], numbers: NDArray[np.int64], copies: Footprints, found: Floats) -> None:
+            start = time.perf_counter()
+            room = int(np.diff(numbers).sum())
+            leaving, gone = np.zeros(room * goes, RAY), np.zeros(1, np.int64)
+            asking, asked = np.zeros(room * asks, RAY), np.zeros(1, np.int64)
+            mine = part._replace(seen=copies, radiance=found, method=np.empty(len(which), np.uint8))
+            csg(
+                numbers, bounces, indirect, fine, False, settings.seed, leaving, gone, asking, asked, part.pattern,
+                copies.footprints, which, self.scene.objects, *self._of(mine),
             )  # fmt: skip
             part.took("csg", start)
             start = time.perf_counter()
-            bounce.ask(asking[: asked[0]], self.caster, part.radiance)
-            self._meet(leaving[: gone[0]], footprints, part.radiance)
+            bounce.ask(asking[: asked[0]], self.caster, found)
+            self._meet(leaving[: gone[0]], copies.footprints, found)
             part.took("bounce", start)
+
+        if not indirect:
+            part.radiance[chosen] = 0.0
+        self._converge(part.seen, chosen, goes + asks, bounces, sample, part.radiance)
+        part.method[chosen] = CSG
 
 
 def render(

@@ -260,6 +260,7 @@ FOOTPRINT = np.dtype(
         ("torn", "u8"),  # ... or between that and the highest or the lowest points of the grooves, but not both
         ("open", "u1"),  # THROUGH or BESIDE, at the outline of a sphere or a cylinder
         ("x", "f8"), ("y", "f8"), ("size", "f8"),  # its square on the screen: left, top, edge; in pixels
+        ("weight", "f8"),  # the part of the pixel that it stands for: its own, but on an edge that is not split further
     ]
 )  # fmt: skip
 """A square of the screen all of which sees one smooth surface: a pixel, or a part of one on a silhouette. Or a pixel at

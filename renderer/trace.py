@@ -22,7 +22,7 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from renderer.body import Base, Body, facing
-from renderer.geometry.random import drawn, jitter, seed_of
+from renderer.geometry.random import PLACE, drawn
 from renderer.kernel import borrow, kernel, leaf
 from renderer.scattering import TOUCH, scatter
 from renderer.shading import Vector, ambient, dot, lit_by, sky_from, unit
@@ -181,30 +181,27 @@ class Truth:
     ) -> None:  # fmt: skip
         """Write the pixels of a tile: their radiance (n, 3) and method (n,).
 
-        samples: at least so many a pixel, in a grid of strata. bounces: so often light is followed. slots: as
+        samples: so many a pixel, the same places as those of `csg`. bounces: so often light is followed. slots: as
         CompiledScene.
         """
-        columns = math.ceil(math.sqrt(samples))
-        rows = math.ceil(samples / columns)
-        each = columns * rows
         names = np.concatenate(slots) if slots else np.zeros(0, np.int32)
         first = np.cumsum([0, *(len(slot) for slot in slots)])[[traced.body.row for traced in self.bodies]]
         clear = np.array([traced.body.clear for traced in self.bodies] + [False])
-        batch = max(RAYS // each, 1)
+        batch = max(RAYS // samples, 1)
         for begin in range(0, width * height, batch):
             stop = min(begin + batch, width * height)
-            count = (stop - begin) * each
+            count = (stop - begin) * samples
             directions = np.empty((count, 3))
-            rays(camera, x, y, width, begin, columns, rows, seed, directions)
+            rays(camera, x, y, width, begin, samples, seed, directions)
             start = nowhere(count)
             start.point[:] = camera.origin
-            pixel = np.repeat(np.arange(begin, stop), each)
-            number = np.tile(np.arange(each), stop - begin)
-            weight = np.full((count, 3), 1.0 / each)
+            pixel = np.repeat(np.arange(begin, stop), samples)
+            number = np.tile(np.arange(samples), stop - begin)
+            weight = np.full((count, 3), 1.0 / samples)
             for bounce in range(bounces + 1):
                 hits = self._meet(start, directions)
                 if bounce == 0:
-                    method[begin:stop] = np.where((hits.body >= 0).reshape(-1, each).any(1), GEOMETRY, NONE)
+                    method[begin:stop] = np.where((hits.body >= 0).reshape(-1, samples).any(1), GEOMETRY, NONE)
                 lit = np.zeros((len(lighting.lights), len(directions)), np.bool_)
                 for row, light in enumerate(lighting.lights):
                     lit[row] = self._lit(light, hits)
@@ -248,20 +245,16 @@ class Truth:
 
 
 @kernel
-def rays(
-    camera: Camera, x: int, y: int, width: int, begin: int, columns: int, rows: int, seed: int, directions: Floats
-) -> None:
+def rays(camera: Camera, x: int, y: int, width: int, begin: int, samples: int, seed: int, directions: Floats) -> None:
     """The world directions (n, 3) of the samples of a tile's pixels from number `begin` on."""
-    each = columns * rows
-    for j in range(len(directions) // each):
+    for j in range(len(directions) // samples):
         px, py = float(x + (begin + j) % width), float(y + (begin + j) // width)
-        state = seed_of(seed, px, py)
-        for i in range(each):
-            state, ju = jitter(state)
-            state, jv = jitter(state)
-            u, v = px + (i % columns + ju) / columns, py + (i // columns + jv) / rows
+        for i in range(samples):
+            _, u, v = drawn(i, PLACE, seed, px, py)
             for c in range(3):
-                directions[j * each + i, c] = camera.corner[c] + u * camera.right[c] + v * camera.down[c]
+                directions[j * samples + i, c] = (
+                    camera.corner[c] + (px + u) * camera.right[c] + (py + v) * camera.down[c]
+                )
 
 
 @leaf

@@ -94,8 +94,8 @@ class Render(Model):
         default=256,
         ge=1,
         le=65_536,
-        description="Stratified samples a pixel of a method that samples; auto takes what its tolerance asks for. "
-        "Default: 256; 2 of method lines.",
+        description="Samples a pixel of a method that samples, evenly spread; auto takes what its tolerance asks for, "
+        "at most these where `bounces` are followed. Default: 256; 2 of method lines.",
     )
     texels: int = Field(
         default=1024,

@@ -26,13 +26,18 @@ from renderer.tables import DIRECTIONAL
 from service.chart.record import APART
 from service.chart.settings import MINE, Setting
 
-NAMES = ("parallel", "tiles", "single", "vinyl", "dovetail", "hieroglyphs", "brushed", "scratches")
+NAMES = ("parallel", "tiles", "single", "vinyl", "dovetail", "hieroglyphs", "brushed", "scratches", "house")
 TOLERANCES = (0.01, 0.003, 0.001)
 SHARE = 0.95
 SIZE = (32, 24)
 SAMPLES, PASSES = 16384, {"scratches": (2, 16), "brushed": (2, 32)}  # of the reference, else (2, 8): scratches glint
-TRUTH = {"hieroglyphs": "geometry", "brushed": "geometry"}  # else `csg`, which on meshes errs where `auto` does
+TRUTH = {
+    "hieroglyphs": "geometry",
+    "brushed": "geometry",
+    "house": "geometry",
+}  # else `csg`, which on meshes errs where `auto` does
 LADDER = (16, 64, 256, 1024)  # samples of csg
+MOST = 65_536  # samples that `auto` may take where light is followed
 RUNS = 3
 
 
@@ -81,7 +86,7 @@ def _example(scene: schema.Scene, method: str, passes: tuple[int, int]) -> tuple
         def within(drawn: Drawn, tolerance: float = tolerance) -> float:
             return float(np.mean(drawn.off <= tolerance))
 
-        auto = draw("auto", tolerance=tolerance)
+        auto = draw("auto", MOST, tolerance)
         rivals = {"line": draw("line"), "area": draw("area", tolerance=tolerance)}
         for samples in LADDER:
             rivals[f"csg {samples}"] = sampled(samples)

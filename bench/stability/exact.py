@@ -14,7 +14,7 @@ import numpy as np
 
 from bench.scenes import Floats
 from bench.stability.scenes import WIDTH, Case, Setting, axes
-from renderer.geometry.random import jitter, seed_of
+from renderer.geometry.random import PLACE, drawn, jitter, seed_of
 from renderer.kernel import kernel, leaf
 
 ROUNDING = 1e-12  # of a groove width
@@ -32,10 +32,10 @@ def far(setting: Setting, case: Case) -> bool:
 
 
 def truth(setting: Setting, pixels: tuple[int, int], samples: int, seed: int, whole_period: bool = False) -> Floats:
-    """The mean radiance (H, W) of the pixels, from a grid of at least `samples` jittered samples each.
+    """The mean radiance (H, W) of the pixels, from `samples` each, where `csg` takes them.
 
-    whole_period: samples of a period of the grooves in place of the footprint, each along one of the pixel's rays:
-    next to no noise, and off by about 1 / MANY^2 for a pixel's part of a period.
+    whole_period: at least as many, a grid of a period of the grooves in place of the footprint, each along one of the
+    pixel's rays: next to no noise, and off by about 1 / MANY^2 for a pixel's part of a period.
     """
     assert setting.families, "not all straight"
     angles = sorted({family.angle for family in setting.families})
@@ -56,10 +56,10 @@ def truth(setting: Setting, pixels: tuple[int, int], samples: int, seed: int, wh
         for f in setting.families
     ]
     points = np.array(setting.profile)
-    columns = math.ceil(math.sqrt(samples))
+    columns = math.ceil(math.sqrt(samples)) if whole_period else samples
     out = np.zeros((pixels[1], pixels[0]))
     shoot(
-        origin, corner, right, down, columns, (samples + columns - 1) // columns, seed, np.array(rows, float), points,
+        origin, corner, right, down, columns, math.ceil(samples / columns), seed, np.array(rows, float), points,
         np.array(setting.light), cell, out,
     )  # fmt: skip
     return out
@@ -126,11 +126,12 @@ def shoot(
             state = seed_of(seed, float(px), float(py))
             total = 0.0
             for i in range(columns * rows):
-                state, ju = jitter(state)
-                state, jv = jitter(state)
-                u, v = px + (i % columns + ju) / columns, py + (i // columns + jv) / rows
                 if whole_period:  # its strata are those of the period
-                    u, v = px + ju, py + jv
+                    state, u = jitter(state)
+                    state, v = jitter(state)
+                else:
+                    _, u, v = drawn(i, PLACE, seed, float(px), float(py))
+                u, v = px + u, py + v
                 dx = corner[0] + u * right[0] + v * down[0]
                 dy = corner[1] + u * right[1] + v * down[1]
                 dw = corner[2] + u * right[2] + v * down[2]

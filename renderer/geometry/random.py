@@ -8,6 +8,7 @@ from renderer.kernel import leaf
 
 WORD = np.uint64(0xFFFFFFFF)  # the bits of coordinates,
 RESOLUTION = 1.0 / 4294967296.0  # and what the last of them is worth
+PLACE = -1  # the step of a path at which its place in the footprint is drawn
 
 
 @leaf

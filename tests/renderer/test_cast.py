@@ -120,7 +120,7 @@ def test_the_inside_of_a_surface_is_one_footprint_a_pixel(check: Callable[[Json]
     assert (count[far < 0.25] == 1).all()
     assert (count[(np.abs(x[None, :]) > 1.6) & (y[:, None] < 9)] == 0).all()
     assert count.max() <= 256
-    assert float((seen["size"] ** 2).sum()) == pytest.approx(600, abs=2)
+    assert float(seen["weight"].sum()) == pytest.approx(600, abs=2)
 
 
 # --- shadows ---

@@ -266,8 +266,8 @@ def test_auto_says_what_it_is_wrong_by(shape: str, picture: Callable[..., Any], 
 def test_pixels_over_which_the_base_turns_much(method: str, shape: str, radiance: Radiance) -> None:
     """A ball nine pixels wide is that of many pixels, put together, where all of these see it well."""
     data = scene(shape, [row(0.1, -0.02, 24)], 40.0)
-    fine = radiance(data, method=method, resolution=(96, 72), tolerance=1e-3)
-    mean = fine.reshape(9, 8, 12, 8, 3).mean(axis=(1, 3))
+    fine = radiance(data, method=method, resolution=(48, 36), tolerance=1e-3)
+    mean = fine.reshape(9, 4, 12, 4, 3).mean(axis=(1, 3))
     well = facing(shape).reshape(9, 4, 12, 4).all(axis=(1, 3))
     for tolerance in (0.01, 0.003):
         off = np.abs(radiance(data, method=method, resolution=(12, 9), tolerance=tolerance) - mean).mean(axis=2)

@@ -76,7 +76,7 @@ def test_an_even_picture_is_a_constant_sky(method: str, name: str, plate: Plate,
             scene = plate([family()], materials={"stone": MATERIALS[name]}, render={"bounces": bounces})
             scene["objects"][0]["shape"] = shape
             constant = scene | {"lights": [{"type": "constant", "radiance": EVEN}]}
-            options: dict[str, Any] = {"method": method, "samples": 16, "texels": 64}
+            options: dict[str, Any] = {"method": method, "samples": 16, "texels": 64, "resolution": (24, 18)}
             found = radiance(scene | {"lights": [ENVMAP]}, meshes=even, **options)
             expected = radiance(constant, **options)
             if bounces and name != "matt" and method in ("line", "area", "lines", "auto"):

@@ -32,6 +32,7 @@ Radiance = Callable[..., Floats]
 RUNS = 16
 SAMPLES = 64
 BIAS = 2e-4  # of radiance of about 1
+CHORDS = 3e-3  # in a pixel where light grazes, which arcs' normals face and the chords of Mitsuba's mesh do not
 
 PALETTE = {
     "stone": {"base_color": [0.7, 0.65, 0.6], "specular": 0},
@@ -114,13 +115,13 @@ def student(k: int, pixels: int) -> tuple[float, float]:
 
 
 def compared(ours: Floats, theirs: Floats) -> tuple[Floats, tuple[float, float]]:
-    """Of pictures (RUNS, H, W, 3) the z of each noisy pixel's luminance, and the difference of the means with its
-    standard error."""
+    """Of pictures (RUNS, H, W, 3) the z of each pixel's luminance that is noisy in theirs, and the difference of the
+    means with its standard error."""
     ours, theirs = ours.mean(axis=3), theirs.mean(axis=3)
     noise = (ours.var(axis=0, ddof=1) + theirs.var(axis=0, ddof=1)) / len(ours)
     difference = ours.mean(axis=0) - theirs.mean(axis=0)
-    noisy = noise > 1e-10
-    assert np.abs(difference[~noisy]).max(initial=0.0) < 1e-4
+    noisy = theirs.var(axis=0, ddof=1) / len(theirs) > 1e-10
+    assert (np.abs(difference) - 4.0 * np.sqrt(noise))[~noisy].max(initial=0.0) < CHORDS
     means = [pictures.mean(axis=(1, 2)) for pictures in (ours, theirs)]
     error = sum(mean.var(ddof=1) / len(mean) for mean in means) ** 0.5
     return difference[noisy] / np.sqrt(noise[noisy]), (float(difference.mean()), float(error))

@@ -70,7 +70,8 @@ def compare(radiance: Callable[..., Floats], data: Json, method: str, truth: int
 def test_line_shows_what_rays_meet(
     plate: Callable[..., Json], radiance: Callable[..., Floats], grooves: list[Json], material: Json, bounces: int
 ) -> None:
-    compare(radiance, scene(plate, grooves, material, bounces, [SUN, LAMP, SKY]), "line")
+    data = scene(plate, grooves, material, bounces, [SUN, LAMP, SKY], camera={"resolution": [32, 24]})
+    compare(radiance, data, "line")
 
 
 def test_mirrors_reflect_in_the_world(plate: Callable[..., Json], radiance: Callable[..., Floats]) -> None:
