@@ -44,6 +44,7 @@ FEW = 2  # with a tolerance, and no more pieces near than this, it begins with
 PROBE = 4  # the corners and PROBE * PROBE samples,
 FIRST = 8  # else or then takes FIRST * FIRST,
 MOST = 64  # and at most MOST * MOST; a part of a pixel fewer
+WORTH = 32  # ... of which, sparing, it takes no more than WORTH * WORTH: exact areas are as fast
 GRAINY = 0.01  # the tolerance, at least, where a curved base makes rays bend much: many footprints at low light
 BENT = 0.3  # ... by this part of its slope
 UNSEEN = 0.1  # of white over n: what the parts that no sample has met may be
@@ -66,7 +67,7 @@ def csg(
 
     numbers: (n, 2) the samples to take of each, from the first to before the last, their mean; they are spread evenly,
     the first n for every n. Where there are none, as many as the tolerance asks for, which is the error relative to a
-    white surface in the same light, with no bounces. sparing: NOT_MINE, where that is more than the most it may take.
+    white surface in the same light, with no bounces. sparing: NOT_MINE, where that is more than it is worth.
     bounces: how often light is followed from facet to facet; indirect: that light alone, added to what is there.
     leaving: room for each sample's RAY (`rays.follow`),
     if others are to meet them; `gone` (1,) is how many there are. asking, asked: the same for light that another object
@@ -312,7 +313,7 @@ def csg(
                 across, down, corners = begin, begin, 0
                 continue
             across = int(math.ceil(1.05 * across * min((error / target) ** (2.0 / 3.0), float(MOST))))
-            if sparing and across > most:
+            if sparing and across > WORTH:
                 taken = 0
                 break
             across = down = min(across, most)

@@ -32,7 +32,7 @@ from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
-from renderer.sampling import EVEN, sampled, whiteness
+from renderer.sampling import EVEN, FIRST, sampled, whiteness
 from renderer.tables import BARE, BASE, CSG, MESH, NOT_MINE, RAY, Floats, Lighting, Pattern
 from renderer.trace import Truth
 
@@ -223,6 +223,14 @@ class Frame:
         self._converge(seen, chosen, 1, settings.bounces, look, radiance)
         spent["bounce"] = spent.get("bounce", 0.0) + time.perf_counter() - start
 
+    def _most(self, bounces: int) -> int:
+        """Samples of a pixel, at most, where rays go on: of `auto` with no bounces as many as bring an edge of a
+        quarter of white within its tolerance at two deviations."""
+        settings = self.settings
+        if settings.method != "auto" or bounces > 0:
+            return settings.samples
+        return min(max(math.ceil(math.pow(EDGE / settings.tolerance, 1.0 / EVEN)), FIRST), MOST**2)
+
     def _converge(
         self, seen: Footprints, chosen: NDArray[np.int64], rays: int, bounces: int, sample: Callable[..., None],
         radiance: Floats,
@@ -248,7 +256,7 @@ class Frame:
         made = sampled(
             footprints["pixel"], footprints["weight"],
             whiteness(seen.footprints, chosen, seen.frames, self.scene.camera, self.scene.lighting),
-            settings.tolerance if adaptive else 0.0, MOST**2 if adaptive and bounces == 0 else settings.samples, draw,
+            settings.tolerance if adaptive else 0.0, self._most(bounces), draw,
         )  # fmt: skip
         radiance[chosen, :3] += made.mean
         radiance[chosen, 3] += made.error

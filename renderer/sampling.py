@@ -23,8 +23,8 @@ FIRST = 32  # of a pixel, to begin with
 EIGHTHS = 8
 EVEN = 0.75  # errors shrink by the number of samples to this power, at least: that of an edge
 EIGHTH = EIGHTHS**-0.5  # of what eighths differ by is the error of their mean, were they independent; they are better
-SURE = 0.4  # how much of the tolerance the standard error may take: what is known of the light itself may err too
-UNSEEN = 0.1  # of white over n: what the parts that no sample has met may be
+SURE = 0.45  # how much of the tolerance the standard error may take: what is known of the light itself may err too
+UNSEEN = 0.14  # of white over n: what the parts that no sample has met may be
 LEAP = 8  # as many times the samples are taken in one round, at most
 
 
@@ -74,7 +74,7 @@ def sampled(
         now = np.hypot(now, UNSEEN * whiteness / wanted)
         error, taken = np.where(going, now, error), np.where(going, wanted, taken)
         going &= (error > target) & (wanted < last)
-        more = np.ceil(np.log2(np.maximum(error / np.maximum(target, 1e-300), 1.0)) / EVEN).clip(1, math.log2(LEAP))
+        more = np.floor(np.log2(np.maximum(error / np.maximum(target, 1e-300), 1.0)) / EVEN).clip(1, math.log2(LEAP))
         wanted = np.where(going, np.minimum(wanted * np.exp2(more).astype(np.int64), last), wanted)
     count = counts.sum(axis=0)
     told = np.divide(error, SURE * whiteness, out=np.zeros(groups), where=whiteness > 0.0)
