@@ -47,7 +47,7 @@ from renderer.geometry.straight import left_out
 from renderer.geometry.view import view_of
 from renderer.kernel import borrow, keep, kernel, leaf
 from renderer.shading import are_distant, to_world, white
-from renderer.tables import AREA, NOT_MINE, Camera, Floats, Lighting, Pattern
+from renderer.tables import AREA, CROWDED, NOT_MINE, Camera, Floats, Lighting, Pattern
 
 PARTS = 2048  # polygons that are left of one face
 LEAST = 1e-12  # parts of a footprint as small as this are nothing
@@ -263,8 +263,8 @@ def area_sampling(
 
     tolerance: the error to keep within, relative to a white surface in the same light. rough: the error, at most, that
     straight rays over a curved base may make. flat: they share one frame.
-    NOT_MINE where more than `most` strips are near, or where the shares do not sum to one. slots: rows of `materials`
-    for the pattern's facets, the object's own first.
+    CROWDED where more than `most` strips are near; NOT_MINE where the shares do not sum to one, or too much is left to
+    error. slots: rows of `materials` for the pattern's facets, the object's own first.
     """
     owned = local_of(pattern), seen_of(len(lighting.lights)), parts_of()
     local, seen, parts = borrow(owned[0]), borrow(owned[1]), borrow(owned[2])
@@ -283,6 +283,7 @@ def area_sampling(
         method[index] = NOT_MINE
         view = view_of(footprint, frame, camera)
         if see(pattern, frame, footprint, flat, camera, lights, chords, most, local, seen) == FULL:
+            method[index] = CROWDED
             continue
         bright = white(lighting, to_world(frame, view.p, view.q, 0.0))
         long = turns(frame, view, lights, turn)

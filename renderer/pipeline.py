@@ -33,7 +33,7 @@ from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
 from renderer.sampling import EVEN, FIRST, sampled, whiteness
-from renderer.tables import BARE, BASE, CSG, MESH, NOT_MINE, RAY, Floats, Lighting, Pattern
+from renderer.tables import BARE, BASE, CROWDED, CSG, MESH, NOT_MINE, RAY, Floats, Lighting, Pattern
 from renderer.trace import Truth
 
 TILE = 64  # pixels
@@ -300,16 +300,18 @@ class Frame:
             else:
                 area_sampling(settings.tolerance, rough, most, flat, pattern, footprints, ordered, *rest)
             part.took("lines" if settings.method == "lines" else "area", start)
+            left = left[method[left] >= CROWDED]
+        crowded = left[method[left] == CROWDED]
+        if len(crowded) and settings.method == "auto":
             left = left[method[left] == NOT_MINE]
-        if len(left) and settings.method == "auto":
-            self._sample(part, left, sparing=True)
-            left = in_blocks(footprints, left[method[left] == NOT_MINE])
+            self._sample(part, crowded, sparing=True)
+            crowded = in_blocks(footprints, crowded[method[crowded] == NOT_MINE])
             start = time.perf_counter()  # with as many strips as there is room for, where samples do not do
             area_sampling(
-                settings.tolerance, rough, STRIPS, int(part.row) in self.flat, pattern, footprints, left, *rest
+                settings.tolerance, rough, STRIPS, int(part.row) in self.flat, pattern, footprints, crowded, *rest
             )
             part.took("area", start)
-            left = left[method[left] == NOT_MINE]
+            left = np.concatenate([left, crowded[method[crowded] >= CROWDED]])
         if len(left):
             self._sample(part, left)
 

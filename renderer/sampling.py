@@ -19,7 +19,7 @@ from renderer.kernel import borrow, kernel
 from renderer.shading import to_world, white
 from renderer.tables import Camera, Floats, Lighting
 
-FIRST = 32  # of a pixel, to begin with
+FIRST = 32  # of a pixel, to begin with, at least
 EIGHTHS = 8
 EVEN = 0.75  # errors shrink by the number of samples to this power, at least: that of an edge
 EIGHTH = EIGHTHS**-0.5  # of what eighths differ by is the error of their mean, were they independent; they are better
@@ -57,7 +57,9 @@ def sampled(
     whiteness = np.bincount(group, weight * bright)
     target = SURE * tolerance * whiteness / np.sqrt(area)
     last = 1 << int(math.log2(most)) if eighths > 1 else most
-    wanted = np.full(groups, min(FIRST, last) if eighths > 1 else most)
+    wanted = np.full(groups, most)
+    if eighths > 1:  # before that none is done
+        wanted[:] = min(1 << math.ceil(math.log2(max(FIRST, UNSEEN / (SURE * tolerance)))), last)
     taken, error = np.zeros(groups, np.int64), np.zeros(groups)
     going = np.ones(groups, np.bool_)
     while going.any():

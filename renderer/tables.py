@@ -327,3 +327,4 @@ METHODS = ("none", "base", "segment", "line", "csg", "geometry", "relief", "area
 """What the AOV `method` counts: the index of the method that a pixel took; `none` where the camera sees no object."""
 NONE, BASE, SEGMENT_METHOD, LINE, CSG, GEOMETRY, RELIEF, AREA, LINES = range(9)
 NOT_MINE = 255  # ... of a footprint that a kernel leaves to the next method
+CROWDED = 254  # ... as there is more near it than the kernel was to take, or has room for
