@@ -1,11 +1,11 @@
-"""Method `csg`: rays against the spans of added and removed material (003), n stratified samples a footprint.
+"""Method `csg`: rays against the spans of added and removed material (003), n even samples a footprint.
 
 Right for every case, however slow. `auto` sends it what no cheaper method takes. Where light is followed further, or
-another object may stand in its way, it is told which samples to take (`sampling`); else a footprint
-near one or two grooves whose corners and first few samples all fall on one facet, all lit alike, is left at those: what
-one straight edge cuts off a footprint has one of its corners in it. Any other gets as many as bring the predicted error
-within the tolerance: that of a mean of strata, whose variances the differences of neighbours tell. A part of a pixel,
-as next to an outline, gets fewer the smaller it is: of a pixel's parts the errors are independent.
+another object may stand in its way, it is told which samples to take (`sampling`). Else a footprint near one or two
+grooves whose corners and first few samples all fall on one facet, all lit alike, is left at those: what one straight
+edge cuts off a footprint has one of its corners in it. Any other gets as many as bring the predicted error within the
+tolerance: that of a mean of strata, whose variances the differences of neighbours tell. A part of a pixel, as next to
+an outline, gets fewer the smaller it is: of a pixel's parts the errors are independent.
 """
 
 from __future__ import annotations
@@ -50,7 +50,6 @@ BENT = 0.3  # ... by this part of its slope
 UNSEEN = 0.1  # of white over n: what the parts that no sample has met may be
 STRATIFIED = 0.72  # of what sets neighbours apart is a stratum's own error: an edge between two counts (measured)
 SURE = 0.5  # how much of the tolerance the standard error may take
-EDGE = 0.2  # twice a quarter over the square root of six: what n samples of an edge err by, in parts of n^-3/4
 BOWED = 0.15  # so far chords may be from rays on round shapes, times the tolerance, in pixels' least widths
 SHADED = 4.0  # ... and those of shadows this times as far
 
@@ -65,14 +64,14 @@ def csg(
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
-    numbers: (n, 2) the samples to take of each, from the first to before the last, their mean; they are spread evenly,
-    the first n for every n. Where there are none, as many as the tolerance asks for, which is the error relative to a
-    white surface in the same light, with no bounces. sparing: NOT_MINE, where that is more than it is worth.
-    bounces: how often light is followed from facet to facet; indirect: that light alone, added to what is there.
-    leaving: room for each sample's RAY (`rays.follow`),
-    if others are to meet them; `gone` (1,) is how many there are. asking, asked: the same for light that another object
-    may keep from where a footprint is `torn`; its `number` is the light's. slots: rows of `materials` for the pattern's
-    facets, the object's own first.
+    numbers: (n, 2) the samples to take of each, from the first to before the last, for their mean; they are spread
+    evenly, the first n for every n. Where there are none, as many as the tolerance asks for, with no bounces. sparing:
+    NOT_MINE, where that is more than it is worth. tolerance: relative to a white surface in the same light; on round
+    shapes rays keep to their curves as it asks. bounces: how often light is followed from facet to facet; indirect:
+    that light alone, added to what is there. leaving: room for each sample's RAY (`rays.follow`), if others are to meet
+    them; `gone` (1,) is how many there are. asking, asked: the same for light that another object may keep from where a
+    footprint is `torn`; its `number` is the light's. slots: rows of `materials` for the pattern's facets, the object's
+    own first.
     """
     capacity = max(pattern.near, SHARED)
     owned = nearby(pattern, capacity), events(pattern), nearby(pattern, capacity)

@@ -20,9 +20,7 @@ from renderer.tables import BESIDE, CYLINDER, FOOTPRINT, FRAME, HIT, MESH, RECTA
 
 LEVELS = 2, 7  # splits of a pixel on an edge, by tolerance
 CROWD = 5, 8  # but after the first number of splits, only while an edge meets no more than the second of parts a row
-LAST = (
-    0.25  # of the side of a square that is split no further is looked at, next to a point that is known to be its own
-)
+LAST = 0.25  # of the side of a square that is split no further is looked at, next to a point known to be its own
 SMOOTH_COSINE = 0.9  # normals within a footprint are never more than about 25 degrees off its middle's
 TURN = 0.25, 2  # ... nor by more than 1 - cosine = TURN * tolerance (measured); up to so many splits for that alone
 MESH_TURN = 2.5, 6  # ... on meshes by MESH_TURN * tolerance^2: the edges of triangles err as normals turn there

@@ -24,7 +24,7 @@ import schema
 from renderer import CACHE, body, bounce, film, relief, shading
 from renderer.area import area_sampling, in_blocks
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
-from renderer.csg import EDGE, MOST, csg
+from renderer.csg import MOST, csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
 from renderer.geometry.strips import STRIPS
@@ -32,7 +32,7 @@ from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
-from renderer.sampling import EVEN, FIRST, sampled, whiteness
+from renderer.sampling import EDGE, EVEN, FIRST, sampled, whiteness
 from renderer.tables import BARE, BASE, CROWDED, CSG, MESH, NOT_MINE, RAY, Floats, Lighting, Pattern
 from renderer.trace import Truth
 
@@ -215,8 +215,9 @@ class Frame:
         start = time.perf_counter()
         method[chosen] = CSG
 
-        def look(which: NDArray[np.int64], numbers: NDArray[np.int64], copies: Footprints, found: Floats) -> None:
+        def look(numbers: NDArray[np.int64], copies: Footprints, found: Floats) -> None:
             rays = np.zeros(np.diff(numbers).sum(), RAY)
+            which = np.arange(len(numbers))
             bounce.look(numbers, settings.bounces, settings.seed, copies.footprints, which, scene.camera, rays)
             self._meet(rays, copies.footprints, found)
 
@@ -232,26 +233,29 @@ class Frame:
         return min(max(math.ceil(math.pow(EDGE / settings.tolerance, 1.0 / EVEN)), FIRST), MOST**2)
 
     def _converge(
-        self, seen: Footprints, chosen: NDArray[np.int64], rays: int, bounces: int, sample: Callable[..., None],
-        radiance: Floats,
+        self, seen: Footprints, chosen: NDArray[np.int64], rays: int, bounces: int,
+        sample: Callable[[NDArray[np.int64], Footprints, Floats], None], radiance: Floats,
     ) -> None:  # fmt: skip
         """Add to footprints' radiance, error and cost what samples find; `auto` takes as many as the tolerance asks.
 
-        sample: adds the mean of the samples `numbers` (n, 2) to the radiance of each of the first n footprints of a
-        table; it needs room for so many `rays` a sample.
+        sample: adds to (n, 5) the mean radiance of the samples `numbers` (n, 2) of the n footprints of a table, what is
+        known of their error otherwise, and their cost; it needs room for so many `rays` a sample.
         """
         settings, footprints = self.settings, seen.footprints[chosen]
         adaptive = settings.method == "auto"
+        otherwise, cost = np.zeros(len(chosen)), np.zeros(len(chosen))
 
         def draw(which: NDArray[np.int64], numbers: NDArray[np.int64]) -> Floats:
-            found = np.zeros((len(which), 5))
+            found = np.zeros((len(which), 3))
             ends = np.flatnonzero(np.diff(np.cumsum(np.diff(numbers)[:, 0] * rays) // RAYS)) + 1
             for some in np.split(np.arange(len(which)), ends):
                 copies = seen._replace(footprints=footprints[which[some]])
                 part = np.zeros((len(some), 5))
-                sample(np.arange(len(some)), numbers[some], copies, part)
-                found[some] = part
-            return found[:, :3]
+                sample(numbers[some], copies, part)
+                found[some] = part[:, :3]
+                np.maximum.at(otherwise, which[some], part[:, 3])
+                np.add.at(cost, which[some], part[:, 4])
+            return found
 
         made = sampled(
             footprints["pixel"], footprints["weight"],
@@ -259,8 +263,8 @@ class Frame:
             settings.tolerance if adaptive else 0.0, self._most(bounces), draw,
         )  # fmt: skip
         radiance[chosen, :3] += made.mean
-        radiance[chosen, 3] += made.error
-        radiance[chosen, 4] += made.taken
+        radiance[chosen, 3] += made.error + otherwise
+        radiance[chosen, 4] += cost
 
     def _meet(self, rays: NDArray[np.void], footprints: NDArray[np.void], radiance: Floats) -> None:
         """Add what RAYs see to their footprints' radiance."""
@@ -336,8 +340,9 @@ class Frame:
             return
         fine = settings.tolerance if settings.method == "auto" else EDGE * math.pow(settings.samples, -EVEN)
 
-        def sample(which: NDArray[np.int64], numbers: NDArray[np.int64], copies: Footprints, found: Floats) -> None:
+        def sample(numbers: NDArray[np.int64], copies: Footprints, found: Floats) -> None:
             start = time.perf_counter()
+            which = np.arange(len(numbers))
             room = int(np.diff(numbers).sum())
             leaving, gone = np.zeros(room * goes, RAY), np.zeros(1, np.int64)
             asking, asked = np.zeros(room * asks, RAY), np.zeros(1, np.int64)

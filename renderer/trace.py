@@ -1,4 +1,4 @@
-"""Method `geometry`: real geometry, traced by Embree with n stratified samples a pixel, each a ray of its own.
+"""Method `geometry`: real geometry, traced by Embree with n even samples a pixel, each a ray of its own.
 
 The ground truth and the peer of the analytic methods: it shares no geometry with them, no footprints, frames or spans.
 Paths go on by directions drawn as the materials answer, as often as the scene says. Embree's single precision is finest

@@ -1,9 +1,9 @@
 """What `auto` promises: at least 95 % of the pixels within the tolerance, no slower than the slowest that keeps it.
 
 An error is the difference of radiance, the mean of its channels, over what a white matt surface turned to each light
-sends there (`shading.white`). The reference is `csg` in passes, on curved bases `geometry`; its noise is in what is
-counted, so that the shares are of no more than its own noise too low. Single methods: `line`, `area`, and `csg` with
-the first number of samples that keeps the tolerance.
+sends there (`shading.white`). The reference is `csg` in passes, where meshes or round shapes are `geometry`; its noise
+is in what is counted, so that the shares are of no more than its own noise too low. Single methods: `line`, `area`, and
+`csg` with the first number of samples that keeps the tolerance.
 """
 
 from __future__ import annotations
@@ -31,11 +31,8 @@ TOLERANCES = (0.01, 0.003, 0.001)
 SHARE = 0.95
 SIZE = (32, 24)
 SAMPLES, PASSES = 16384, {"scratches": (2, 16), "brushed": (2, 32)}  # of the reference, else (2, 8): scratches glint
-TRUTH = {
-    "hieroglyphs": "geometry",
-    "brushed": "geometry",
-    "house": "geometry",
-}  # else `csg`, which on meshes errs where `auto` does
+# Else `csg`, which on meshes errs where `auto` does.
+TRUTH = dict.fromkeys(("hieroglyphs", "brushed", "house"), "geometry")
 LADDER = (16, 64, 256, 1024)  # samples of csg
 MOST = 65_536  # samples that `auto` may take where light is followed
 RUNS = 3
