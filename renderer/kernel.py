@@ -10,6 +10,7 @@ import ctypes
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
+import llvmlite.binding
 import numba
 import numpy as np
 from numba.core import types
@@ -25,7 +26,9 @@ N = TypeVar("N", int, bool)
 
 def kernel(function: F) -> F:
     """What Python calls: compiled on its first call, or loaded from the cache."""
-    return numba.njit(cache=True, nogil=True, error_model="numpy")(function)  # type: ignore[no-any-return]
+    return numba.njit(  # type: ignore[no-any-return]
+        cache=True, nogil=True, error_model="numpy", pipeline_class=_KernelCompiler
+    )(function)
 
 
 def leaf(function: F) -> F:
@@ -67,6 +70,49 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
         """Nothing: see above."""
 
 
+_COUNTS = """
+declare void @NRT_MemInfo_call_dtor(ptr)
+
+define linkonce_odr void @NRT_incref(ptr %counted) {
+  %none = icmp eq ptr %counted, null
+  br i1 %none, label %done, label %count
+count:
+  %before = atomicrmw add ptr %counted, i64 1 monotonic
+  br label %done
+done:
+  ret void
+}
+
+define linkonce_odr void @NRT_decref(ptr %counted) {
+  %none = icmp eq ptr %counted, null
+  br i1 %none, label %done, label %count
+count:
+  %before = atomicrmw sub ptr %counted, i64 1 acq_rel
+  %last = icmp eq i64 %before, 1
+  br i1 %last, label %free, label %done
+free:
+  call void @NRT_MemInfo_call_dtor(ptr %counted)
+  br label %done
+done:
+  ret void
+}
+"""
+
+
+class _KernelLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """What a kernel is translated to: machine code in which nothing is left of counts of what is not counted.
+
+    numba calls a function to count a reference up or down, also where it knows that there is nothing to count, as of
+    fields of records and of what is borrowed. Each call costs little, but none of a kernel's numbers stays in a
+    register over it. Here the counting is set in, and goes where there is nothing to count.
+    """
+
+    def __init__(self, codegen: Any, name: str) -> None:
+        super().__init__(codegen, name)
+        known = str(codegen._create_empty_module(name)) + _COUNTS  # the first definition is what counts
+        self._final_module = llvmlite.binding.parse_assembly(known)
+
+
 @register_pass(mutates_CFG=True, analysis_only=False)
 class _PartLowering(NativeLowering):  # type: ignore[misc]
     _name = "part_lowering"
@@ -76,12 +122,28 @@ class _PartLowering(NativeLowering):  # type: ignore[misc]
         return cast(bool, super().run_pass(state))
 
 
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _KernelLowering(NativeLowering):  # type: ignore[misc]
+    _name = "kernel_lowering"
+
+    def run_pass(self, state: Any) -> bool:
+        state.library = _KernelLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return cast(bool, super().run_pass(state))
+
+
 class _PartCompiler(CompilerBase):  # type: ignore[misc]
+    _lowering = _PartLowering
+
     def define_pipelines(self) -> list[Any]:
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [(_PartLowering if p is NativeLowering else p, why) for p, why in passes.passes]
+        passes.passes = [(self._lowering if p is NativeLowering else p, why) for p, why in passes.passes]
         passes.finalize()
         return [passes]
+
+
+class _KernelCompiler(_PartCompiler):
+    _lowering = _KernelLowering
 
 
 def _part(function: F, *, forceinline: bool) -> F:
