@@ -104,13 +104,20 @@ class _KernelLibrary(JITCodeLibrary):  # type: ignore[misc]
 
     numba calls a function to count a reference up or down, also where it knows that there is nothing to count, as of
     fields of records and of what is borrowed. Each call costs little, but none of a kernel's numbers stays in a
-    register over it. Here the counting is set in, and goes where there is nothing to count.
+    register over it. Here the counting is set in, and goes where there is nothing to count. And what only the kernel
+    calls is known to be its own: of the hundreds of numbers in its tables, functions are handed those they use.
     """
 
     def __init__(self, codegen: Any, name: str) -> None:
         super().__init__(codegen, name)
         known = str(codegen._create_empty_module(name)) + _COUNTS  # the first definition is what counts
         self._final_module = llvmlite.binding.parse_assembly(known)
+
+    def _optimize_final_module(self) -> None:
+        for function in self._final_module.functions:
+            if function.linkage == llvmlite.binding.Linkage.linkonce_odr:
+                function.linkage = llvmlite.binding.Linkage.internal
+        super()._optimize_final_module()
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
