@@ -54,6 +54,26 @@ def look(
 
 
 @kernel
+def depart(
+    rays: NDArray[np.void], objects: NDArray[np.void], start: float, origin: Floats, way: Floats, own: Ints
+) -> None:
+    """Where RAYs (n,) begin and go, (n, 3) each, and what they leave, as `Shapes.hits` wants it. start: how far off a
+    mesh they begin."""
+    for k in range(len(rays)):
+        ray = rays[k]
+        own[k] = ray.object
+        shape = objects[ray.object].shape if ray.object >= 0 else RECTANGLE
+        ahead = ray.clear if shape == MESH or (ray.within and shape != RECTANGLE) else 0.0  # it may meet itself
+        if shape == MESH:
+            ahead += start
+        if ray.within:
+            own[k] = -2 - ray.object
+        for c in range(3):
+            way[k, c] = ray.way[c]
+            origin[k, c] = ray.origin[c] + ahead * ray.way[c]
+
+
+@kernel
 def meet_sky(rays: NDArray[np.void], chosen: NDArray[np.int64], lighting: Lighting, radiance: Floats) -> None:
     """Rays RAY that meet nothing: add the sky to their footprints' radiance (n, 5)."""
     lighting = borrow(lighting)
@@ -162,25 +182,17 @@ def meet(
     patterns, slots: by the column `pattern` and by the row of OBJECT.
     """
     while len(rays):
-        own = rays["object"].astype(np.int32)
-        shape, within = np.where(own >= 0, shapes.objects["shape"][own], RECTANGLE), rays["within"] != 0
-        again = (shape == MESH) | within & (shape != RECTANGLE)  # it may meet itself
-        ahead = np.where(again, rays["clear"], 0.0) + np.where(shape == MESH, shapes.start, 0.0)
-        own[within] = -2 - own[within]
-        way = np.ascontiguousarray(rays["way"])
-        origin = rays["origin"] + ahead[:, None] * way
+        origin, way, own = np.empty((len(rays), 3)), np.empty((len(rays), 3)), np.empty(len(rays), np.int32)
+        depart(rays, shapes.objects, shapes.start, origin, way, own)
         hits = shapes.hits(origin, way, own)
-        seen = hits["object"] >= 0
-        meet_sky(rays, np.flatnonzero(~seen), lighting, radiance)
-        rays, hits, origin, way = rays[seen], hits[seen], origin[seen], way[seen]
-        frames = shapes.frames(origin, way, hits)
-        blocked = shapes.blocked(origin, way, hits, lighting.lights)
-        leaving, gone = np.zeros(len(rays), RAY), np.zeros(1, np.int64)
-        for row in np.unique(hits["object"]):
+        frames, blocked = shapes.frames(origin, way, hits), shapes.blocked(origin, way, hits, lighting.lights)
+        leaving, gone = np.empty(len(rays), RAY), np.zeros(1, np.int64)
+        seen, grooved = hits["object"].copy(), frames["grooved"] != 0
+        meet_sky(rays, np.flatnonzero(seen < 0), lighting, radiance)
+        for row in range(len(shapes.objects)):
             index = shapes.objects["pattern"][row]
-            grooved = (frames["grooved"] != 0) & (index >= 0)
             for pattern, which in ((BARE, ~grooved), (patterns[index] if index >= 0 else BARE, grooved)):
-                chosen = np.flatnonzero((hits["object"] == row) & which)
+                chosen = np.flatnonzero((seen == row) & which)
                 if len(chosen):
                     meet_surface(
                         seed, pattern, shapes.objects, rays, chosen, frames, blocked, footprints, lighting, materials,

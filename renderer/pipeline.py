@@ -37,7 +37,7 @@ from renderer.tables import BARE, BASE, CROWDED, CSG, MESH, NOT_MINE, RAY, Float
 from renderer.trace import Truth
 
 TILE = 64  # pixels
-RAYS = 1 << 16  # from one object to others, at a time
+RAYS = 1 << 14  # from one object to others, at a time
 ROUGH = 0.03  # the error that may be left on meshes' curved bases: next to the terminator light is wrong all over
 FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
@@ -344,8 +344,8 @@ class Frame:
             start = time.perf_counter()
             which = np.arange(len(numbers))
             room = int(np.diff(numbers).sum())
-            leaving, gone = np.zeros(room * goes, RAY), np.zeros(1, np.int64)
-            asking, asked = np.zeros(room * asks, RAY), np.zeros(1, np.int64)
+            leaving, gone = np.empty(room * goes, RAY), np.zeros(1, np.int64)
+            asking, asked = np.empty(room * asks, RAY), np.zeros(1, np.int64)
             mine = part._replace(seen=copies, radiance=found, method=np.empty(len(which), np.uint8))
             csg(
                 numbers, bounces, indirect, fine, False, settings.seed, leaving, gone, asking, asked, part.pattern,

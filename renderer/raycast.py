@@ -11,7 +11,17 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
-from renderer.geometry.shapes import NO_TRIANGLES, Triangles, block, cast, cast_triangles, frames_at, shells
+from renderer.geometry.shapes import (
+    NEXT_TO,
+    NO_TRIANGLES,
+    Triangles,
+    block,
+    cast,
+    cast_triangles,
+    frames_at,
+    shade,
+    shells,
+)
 from renderer.tables import FRAME, HIT, POINT, Floats, Ints
 
 Bools = NDArray[np.bool_]
@@ -22,7 +32,7 @@ START = 1e-5  # rays leave a mesh by this part of half the meshes' extent: singl
 def ways(light: np.void, points: Floats) -> tuple[Floats, Floats]:
     """From points (n, 3) to a light, (n, 3), and how many times that far (n,) it is."""
     if light["kind"] == POINT:
-        return light["vector"] - points, np.full(len(points), 1.0 - 1e-9)
+        return light["vector"] - points, np.full(len(points), NEXT_TO)
     return np.broadcast_to(light["vector"], points.shape), np.full(len(points), np.inf)
 
 
@@ -83,7 +93,7 @@ class Caster:
         return hits
 
     def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> NDArray[np.void]:
-        """The tangent FRAME (n,) at each of the hits (n,), none of them a miss; the origin is (3,) or (n, 3)."""
+        """The tangent FRAME (n,) at each of the hits (n,); the origin is (3,) or (n, 3)."""
         frames = np.zeros(len(hits), FRAME)
         origins = np.ascontiguousarray(np.broadcast_to(origin, directions.shape))
         frames_at(self.objects, self.triangles, origins, directions, hits, self.bent, frames)
@@ -99,19 +109,19 @@ class Caster:
         mask = np.zeros(len(hits), np.uint64)
         if not self.shadows:
             return mask
-        seen = hits["object"] >= 0
+        own = hits["object"].astype(np.int32)
+        seen = own >= 0
         points = origin + np.where(seen, hits["t"], 0.0)[:, None] * directions
-        normals = hits["normal"] * np.where(np.sum(hits["normal"] * directions, axis=1) > 0.0, -1.0, 1.0)[:, None]
-        for index, light in enumerate(lights):
-            to_light, far = ways(light, points)
-            own = np.where(seen, hits["object"], -1).astype(np.int32)
-            blocked = np.zeros(len(hits), np.bool_)
-            block(self.objects, points, np.ascontiguousarray(to_light), far, own, blocked)
-            facing = seen & ~blocked & (np.sum(normals * to_light, axis=1) > 0.0)
-            if self._embree is not None and facing.any():
-                start = points + normals * self.start
-                blocked[facing] |= self._occluded(start[facing], to_light[facing], light["kind"] == POINT)
-            mask |= np.where(blocked, np.uint64(1) << np.uint64(index), np.uint64(0))
+        shade(self.objects, lights, points, own, mask)
+        if self._embree is not None:
+            normals = hits["normal"] * np.where(np.sum(hits["normal"] * directions, axis=1) > 0.0, -1.0, 1.0)[:, None]
+            start = points + normals * self.start
+            for index, light in enumerate(lights):
+                bit, to_light = np.uint64(1) << np.uint64(index), ways(light, points)[0]
+                facing = np.flatnonzero(seen & (mask & bit == 0) & (np.sum(normals * to_light, axis=1) > 0.0))
+                if len(facing):
+                    stopped = self._occluded(start[facing], to_light[facing], light["kind"] == POINT)
+                    mask[facing[stopped]] |= bit
         return mask
 
     def blocked_off(self, points: Floats, own: Ints, lights: NDArray[np.void]) -> NDArray[np.uint64]:
@@ -119,9 +129,11 @@ class Caster:
         mask = np.zeros(len(points), np.uint64)
         if not self.shadows:
             return mask
-        for index, light in enumerate(lights):
-            blocked = self.stopped(points, *ways(light, points), own)
-            mask |= np.where(blocked, np.uint64(1) << np.uint64(index), np.uint64(0))
+        shade(self.objects, lights, points, own, mask)
+        if self._embree is not None and len(points):
+            for index, light in enumerate(lights):
+                stopped = self._occluded(points, ways(light, points)[0], light["kind"] == POINT)
+                mask[stopped] |= np.uint64(1) << np.uint64(index)
         return mask
 
     def stopped(self, points: Floats, towards: Floats, far: Floats, own: Ints) -> Bools:

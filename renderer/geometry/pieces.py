@@ -25,7 +25,7 @@ def locate(piece: np.void, x: float, y: float) -> tuple[float, float]:
     radius = 1.0 / piece.curvature  # signed, the centre lies at b = radius
     ux, uy = piece.ty * radius, -piece.tx * radius  # from the centre to the start point
     vx, vy = dx + ux, dy + uy
-    distance = math.hypot(vx, vy)
+    distance = math.sqrt(vx * vx + vy * vy)
     turn = math.atan2(ux * vy - uy * vx, ux * vx + uy * vy)
     s = turn * radius
     half = math.pi * abs(radius)

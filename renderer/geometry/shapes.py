@@ -13,9 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.kernel import kernel, leaf
-from renderer.tables import CYLINDER, MESH, RECTANGLE, SPHERE, Floats, Ints
+from renderer.tables import CYLINDER, MESH, POINT, RECTANGLE, SPHERE, Floats, Ints
 
 Vector = tuple[float, float, float]
+
+NEXT_TO = 1.0 - 1e-9  # of the way to a lamp; what is beyond stands in no one's light
 
 
 class Triangles(NamedTuple):
@@ -217,25 +219,47 @@ def shells(objects: NDArray[np.void], heights: Floats) -> Shells | None:
     return Shells(outer, np.where(outer["shape"] == CYLINDER, radius - deep * sigma, np.inf))
 
 
+@leaf
+def stands_before(objects: NDArray[np.void], own: int, at: Vector, way: Vector, far: float) -> bool:
+    """Whether a shape, meshes and the row `own` of its own object aside, is met from `at` along `way` before `far`."""
+    for k in range(len(objects)):
+        obj = objects[k]
+        if k == own or obj.shape == MESH:
+            continue
+        s = obj.translation
+        o = local(obj, at[0] - s[0], at[1] - s[1], at[2] - s[2])
+        t, _ = meet_shape(obj, o, local(obj, way[0], way[1], way[2]), far, False)
+        if t < far:
+            return True
+    return False
+
+
 @kernel
 def block(
     objects: NDArray[np.void], origins: Floats, directions: Floats, far: Floats, own: Ints, blocked: NDArray[np.bool_]
 ) -> None:
     """Mark each ray that meets a shape, meshes and the row `own[i]` of its own object aside, before t = far[i]."""
     for i in range(len(origins)):
-        if blocked[i] or own[i] < 0:
-            continue
-        for k in range(len(objects)):
-            obj = objects[k]
-            if k == own[i] or obj.shape == MESH:
-                continue
-            s = obj.translation
-            o = local(obj, origins[i, 0] - s[0], origins[i, 1] - s[1], origins[i, 2] - s[2])
-            d = local(obj, directions[i, 0], directions[i, 1], directions[i, 2])
-            t, _ = meet_shape(obj, o, d, far[i], False)
-            if t < far[i]:
-                blocked[i] = True
-                break
+        at, way = origins[i], directions[i]
+        if own[i] >= 0 and not blocked[i]:
+            blocked[i] = stands_before(objects, own[i], (at[0], at[1], at[2]), (way[0], way[1], way[2]), far[i])
+
+
+@kernel
+def shade(
+    objects: NDArray[np.void], lights: NDArray[np.void], points: Floats, own: Ints, masks: NDArray[np.uint64]
+) -> None:
+    """Set the bits of the lights that a shape, meshes aside, keeps from points (n, 3) of the objects `own` (n,); -1: of
+    none."""
+    for i in range(len(points)):
+        at = (points[i, 0], points[i, 1], points[i, 2])
+        for l in range(len(lights) if own[i] >= 0 else 0):
+            v, far = lights[l].vector, math.inf
+            way = (v[0], v[1], v[2])
+            if lights[l].kind == POINT:
+                way, far = (v[0] - at[0], v[1] - at[1], v[2] - at[2]), NEXT_TO
+            if stands_before(objects, own[i], at, way, far):
+                masks[i] |= np.uint64(1) << np.uint64(l)
 
 
 @leaf
@@ -329,12 +353,15 @@ def frames_at(
     objects: NDArray[np.void], triangles: Triangles, origins: Floats, directions: Floats, hits: NDArray[np.void],
     bent: bool, frames: NDArray[np.void],
 ) -> None:  # fmt: skip
-    """The tangent frame (n,) FRAME at each hit (n,) of the rays from `origins` (n, 3) along `directions` (n, 3).
+    """The tangent frame (n,) FRAME at each hit (n,) of the rays from `origins` (n, 3) along `directions` (n, 3); of a
+    miss, nothing.
 
     Seen from behind, an opaque surface is bare and turned to the viewer. bent: what carries no pattern has a form, too.
     """
     for i in range(len(hits)):
         hit, frame, origin = hits[i], frames[i], origins[i]
+        if hit.object < 0:
+            continue
         obj = objects[hit.object]
         d = directions[i]
         p = (origin[0] + hit.t * d[0], origin[1] + hit.t * d[1], origin[2] + hit.t * d[2])

@@ -74,12 +74,12 @@ def sigma_at(obj: np.void, cosine: float) -> float:
 def chart(obj: np.void, x: Vector) -> Vector:
     """(p, q, w) of a place in the object's axes, p in its first turn."""
     m = obj.mapping
-    ring = math.hypot(x[0], x[1])
+    ring = math.sqrt(x[0] * x[0] + x[1] * x[1])
     turn = math.atan2(x[1], x[0]) / (2.0 * math.pi)
     p = m[2] + m[0] * (turn if turn >= 0.0 else turn + 1.0)
     if obj.shape == CYLINDER:
         return p, m[3] + m[1] * (x[2] / obj.size[1] + 0.5), (ring - obj.size[0]) / sigma_at(obj, 1.0)
-    radius = math.hypot(ring, x[2])
+    radius = math.sqrt(ring * ring + x[2] * x[2])
     q = m[3] + m[1] * (math.atan2(x[2], ring) / math.pi + 0.5)
     return p, q, (radius - obj.size[0]) / sigma_at(obj, ring / radius)
 
@@ -239,7 +239,7 @@ def pass_through(
         ring, cosine = obj.size[0], 1.0
         if obj.shape == SPHERE:  # nearer to the poles parallels are bent more, and grooves are smaller
             x = ahead(o, d, t)
-            ring = max(math.hypot(x[0], x[1]), POLAR * obj.size[0])
+            ring = max(math.sqrt(x[0] * x[0] + x[1] * x[1]), POLAR * obj.size[0])
             cosine = ring / obj.size[0]
         step = math.sqrt(bow * sigma_at(obj, cosine) * ring) / speed if speed > 0.0 else math.inf
         step = max(step, least)

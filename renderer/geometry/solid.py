@@ -154,7 +154,7 @@ def meet(
     footprint; where -1, the ray looks for them itself, stretch by stretch. w = -inf: nothing.
     """
     thin = THIN * (pattern.height + pattern.depth)
-    slope = math.hypot(gp, gq)
+    slope = math.sqrt(gp * gp + gq * gq)
     if slope * thin > THIN * pattern.width:  # a low ray, or a deep groove: as thin sideways
         thin = THIN * pattern.width / slope
     stretches = 1
@@ -368,5 +368,5 @@ def thin_of(pattern: Pattern) -> float:
 @leaf
 def leveled(gp: float, gq: float, rise: float, least: float) -> float:
     """The height that a ray gains along (gp, gq), a little where it is level: rays are followed by height."""
-    level = least * math.hypot(gp, gq)
+    level = least * math.sqrt(gp * gp + gq * gq)
     return math.copysign(level, rise) if abs(rise) < level else rise
