@@ -30,7 +30,7 @@ NAMES = ("parallel", "tiles", "single", "vinyl", "dovetail", "hieroglyphs", "bru
 TOLERANCES = (0.01, 0.003, 0.001)
 SHARE = 0.95
 SIZE = (32, 24)
-SAMPLES, PASSES = 16384, {"scratches": (2, 16), "brushed": (2, 32)}  # of the reference, else (2, 8): scratches glint
+SAMPLES, PASSES = {"scratches": 131_072}, {"scratches": (4, 4), "brushed": (2, 32)}  # of the reference: scratches glint
 # Else `csg`, which on meshes errs where `auto` does.
 TRUTH = dict.fromkeys(("hieroglyphs", "brushed", "house"), "geometry")
 LADDER = (16, 64, 256, 1024)  # samples of csg
@@ -51,13 +51,14 @@ def measure() -> tuple[list[Line], dict[str, Any]]:
     detail: dict[str, Any] = {}
     for name in NAMES:
         print(f"  auto: {name} ...", flush=True)
-        found, detail[name] = _example(load(name), TRUTH.get(name, "csg"), PASSES.get(name, (2, 8)))
+        found, detail[name] = _example(load(name), name)
         lines += [line._replace(what=f"auto, {name} {line.what}") for line in found]
     return lines, detail
 
 
-def _example(scene: schema.Scene, method: str, passes: tuple[int, int]) -> tuple[list[Line], dict[str, Any]]:
-    truth = reference(scene, method, SIZE, SAMPLES, passes, meshes=_file)
+def _example(scene: schema.Scene, name: str) -> tuple[list[Line], dict[str, Any]]:
+    samples, passes = SAMPLES.get(name, 16_384), PASSES.get(name, (2, 8))
+    truth = reference(scene, TRUTH.get(name, "csg"), SIZE, samples, passes, meshes=_file)
     patterns = PatternCache()
     bright = white(scene, patterns)
     mask = np.isfinite(bright)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from renderer.kernel import leaf
 
@@ -56,6 +57,29 @@ def scrambled(x: np.uint64, seed: np.uint64) -> np.uint64:
     return turned_round(x & WORD)
 
 
+def _third() -> NDArray[np.uint32]:
+    """What each byte of a point's number adds to Sobol's third coordinate (4, 256), of the polynomial t^2 + t + 1."""
+    table = np.zeros((4, 256), np.uint32)
+    number, across, next_across = np.arange(256), 1 << 31, 3 << 30
+    for bit in range(32):
+        table[bit // 8] ^= np.where(number >> bit % 8 & 1, across, 0).astype(np.uint32)
+        across, next_across = next_across, next_across ^ across ^ across >> 2
+    return table
+
+
+THIRD = _third()
+
+
+@leaf
+def second(x: np.uint64) -> np.uint64:
+    """Sobol's second coordinate, of the polynomial t + 1, from the first: by Pascal's triangle modulo 2."""
+    x ^= x << np.uint64(16) & WORD
+    x ^= (x & np.uint64(0x00FF00FF)) << np.uint64(8)
+    x ^= (x & np.uint64(0x0F0F0F0F)) << np.uint64(4)
+    x ^= (x & np.uint64(0x33333333)) << np.uint64(2)
+    return x ^ (x & np.uint64(0x55555555)) << np.uint64(1)
+
+
 @leaf
 def drawn(i: int, step: int, seed: int, x: float, y: float) -> tuple[float, float, float]:
     """The i-th path's point (lobe, u, v) of the unit cube for one of its steps, at a place (x, y).
@@ -66,15 +90,11 @@ def drawn(i: int, step: int, seed: int, x: float, y: float) -> tuple[float, floa
     """
     state = mix(seed_of(seed, x, y) + np.uint64(step))
     k = scrambled(np.uint64(i), state)
-    u, v, lobe = turned_round(k), np.uint64(0), np.uint64(0)
-    # Direction numbers of the polynomials t + 1 and t^2 + t + 1.
-    along, across, next_across = np.uint64(1 << 31), np.uint64(1 << 31), np.uint64(3 << 30)
-    while k > np.uint64(0):
-        if k & np.uint64(1):
-            v, lobe = v ^ along, lobe ^ across
-        k >>= np.uint64(1)
-        along ^= along >> np.uint64(1)
-        across, next_across = next_across, next_across ^ across ^ across >> np.uint64(2)
+    u = turned_round(k)
+    v = second(u)
+    lobe = np.uint64(0)
+    for byte in range(4):
+        lobe ^= np.uint64(THIRD[byte, (k >> np.uint64(8 * byte)) & np.uint64(255)])
     state, a = mix(state), mix(state + np.uint64(1))
     u, v, lobe = scrambled(u, a), scrambled(v, state), scrambled(lobe, state >> np.uint64(32))
     return lobe * RESOLUTION, u * RESOLUTION, v * RESOLUTION

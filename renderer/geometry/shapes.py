@@ -288,9 +288,9 @@ def fill_frame(
         frame.axes[k, 0], frame.axes[k, 1], frame.axes[k, 2] = a[k], b[k], sigma * n[k]
     w = (sigma * n[0], sigma * n[1], sigma * n[2])
     bw, wa, ab = cross(b, w), cross(w, a), cross(a, b)
-    volume = ab[0] * w[0] + ab[1] * w[1] + ab[2] * w[2]
+    part = 1.0 / (ab[0] * w[0] + ab[1] * w[1] + ab[2] * w[2])
     for k in range(3):
-        frame.dual[0, k], frame.dual[1, k], frame.dual[2, k] = bw[k] / volume, wa[k] / volume, ab[k] / volume
+        frame.dual[0, k], frame.dual[1, k], frame.dual[2, k] = part * bw[k], part * wa[k], part * ab[k]
     e = (origin[0] - p[0], origin[1] - p[1], origin[2] - p[2])
     d = frame.dual
     frame.eye[0] = d[0, 0] * e[0] + d[0, 1] * e[1] + d[0, 2] * e[2] + frame.pq[0]
