@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from renderer.geometry.curve import is_curved
 from renderer.geometry.query import nearby
-from renderer.geometry.random import PLACE, drawn
+from renderer.geometry.random import EIGHTHS, PLACE, drawn
 from renderer.geometry.rays import follow
 from renderer.geometry.shapes import local
 from renderer.geometry.shell import LEVEL, ahead, chart, entered, from_world, is_round
@@ -46,11 +46,12 @@ def look(
             ray = rays[made]
             made += 1
             for c in range(3):
-                ray.origin[c], ray.through[c] = camera.origin[c], 1.0 / (stop - first)
+                ray.origin[c], ray.through[c] = camera.origin[c], 1.0
                 ray.way[c] = camera.corner[c] + x * camera.right[c] + y * camera.down[c]
             way = unit((ray.way[0], ray.way[1], ray.way[2]))
             ray.way[0], ray.way[1], ray.way[2] = way
-            ray.footprint, ray.number, ray.bounces, ray.object = chosen[j], i, bounces + 1, -1
+            ray.row, ray.number = EIGHTHS * chosen[j] + i * EIGHTHS // stop, i
+            ray.bounces, ray.object = bounces + 1, -1
 
 
 @kernel
@@ -75,13 +76,13 @@ def depart(
 
 @kernel
 def meet_sky(rays: NDArray[np.void], chosen: NDArray[np.int64], lighting: Lighting, radiance: Floats) -> None:
-    """Rays RAY that meet nothing: add the sky to their footprints' radiance (n, 5)."""
+    """Rays RAY that meet nothing: add the sky to the radiance (EIGHTHS n, 5) of their footprints (n,)."""
     lighting = borrow(lighting)
     for k in chosen:
         ray = rays[k]
         sky = sky_from(lighting, (ray.way[0], ray.way[1], ray.way[2]))
         for c in range(3):
-            radiance[ray.footprint, c] += ray.through[c] * sky[c]
+            radiance[ray.row, c] += ray.through[c] * sky[c]
 
 
 @kernel
@@ -91,7 +92,8 @@ def meet_surface(
     materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, radiance: Floats, leaving: NDArray[np.void],
     gone: NDArray[np.int64],
 ) -> None:  # fmt: skip
-    """Rays RAY that meet one object, each at the origin of its FRAME: add what they see to their footprints' radiance.
+    """Rays RAY that meet one object, each at the origin of its FRAME: add what they see to the radiance of their
+    footprints.
 
     blocked: (n,) masks of the lights that do not reach the frame's origin. leaving, gone: as `csg`.
     """
@@ -103,7 +105,7 @@ def meet_surface(
     for k in chosen:
         ray, frame = rays[k], frames[k]
         obj = objects[frame.object]
-        footprint = footprints[ray.footprint]
+        footprint = footprints[ray.row // EIGHTHS]
         way = (ray.way[0], ray.way[1], ray.way[2])
         steer = (0.0, 0.0)
         if is_round(obj, frame):
@@ -123,23 +125,23 @@ def meet_surface(
         before = gone[0]
         colour = follow(
             ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, steer,
-            frame.within == 1, ray.number, seed, ray.footprint, footprint.x, footprint.y, blocked[k], pattern, obj,
+            frame.within == 1, ray.number, seed, ray.row, footprint.x, footprint.y, blocked[k], pattern, obj,
             frame, lighting, materials, slots, albedo, found, spans, leaving, gone,
         )  # fmt: skip
         if gone[0] > before and frame.within == 1 and leaving[before].within and leaving[before].bounces == ray.bounces:
             gone[0] = before  # it has met nothing on its way out, by rounding, and never would
         for c in range(3):
-            radiance[ray.footprint, c] += colour[c]
+            radiance[ray.row, c] += colour[c]
     keep(owned)
 
 
 @kernel
 def add(rays: NDArray[np.void], stopped: NDArray[np.bool_], radiance: Floats) -> None:
-    """Add the light of the RAYs that are not stopped to their footprints' radiance."""
+    """Add the light of the RAYs that are not stopped to their rows of radiance."""
     for k in range(len(rays)):
         if not stopped[k]:
             for c in range(3):
-                radiance[rays[k].footprint, c] += rays[k].through[c]
+                radiance[rays[k].row, c] += rays[k].through[c]
 
 
 class Shapes(Protocol):
@@ -177,7 +179,7 @@ def meet(
     rays: NDArray[np.void], shapes: Shapes, patterns: Sequence[Pattern], slots: Sequence[NDArray[np.int32]], seed: int,
     footprints: NDArray[np.void], lighting: Lighting, materials: NDArray[np.void], albedo: Floats, radiance: Floats,
 ) -> None:  # fmt: skip
-    """Add what RAYs see, and all that is seen from there, to their footprints' radiance (n, 5).
+    """Add what RAYs see, and all that is seen from there, to the radiance (EIGHTHS n, 5) of their footprints (n,).
 
     patterns, slots: by the column `pattern` and by the row of OBJECT.
     """

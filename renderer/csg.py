@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from renderer.geometry.curve import is_curved, turned, unsure
 from renderer.geometry.query import find, nearby
-from renderer.geometry.random import PLACE, drawn, jitter, seed_of
+from renderer.geometry.random import EIGHTHS, PLACE, drawn, jitter, seed_of
 from renderer.geometry.rays import follow
 from renderer.geometry.shell import STRAY, is_round, is_shaded, placed, raised, seen_from
 from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_ray, thin_of
@@ -64,9 +64,10 @@ def csg(
 ) -> None:  # fmt: skip
     """Shade the footprints `chosen` of one object; write their radiance, predicted error and cost (n, 5) and method.
 
-    numbers: (n, 2) the samples to take of each, from the first to before the last, for their mean; they are spread
-    evenly, the first n for every n. Where there are none, as many as the tolerance asks for, with no bounces. sparing:
-    NOT_MINE, where that is more than it is worth. tolerance: relative to a white surface in the same light; on round
+    numbers: (n, 2) the samples to take of each, from the first to before the last, which are spread evenly, the first n
+    for every n. What those of an eighth of the first to the last add up to is added to radiance (EIGHTHS n, 5). Where
+    there are none, as many as the tolerance asks for, with no bounces, for their mean. sparing: NOT_MINE, where that is
+    more than it is worth. tolerance: relative to a white surface in the same light; on round
     shapes rays keep to their curves as it asks. bounces: how often light is followed from facet to facet; indirect:
     that light alone, added to what is there. leaving: room for each sample's RAY (`rays.follow`), if others are to meet
     them; `gone` (1,) is how many there are. asking, asked: the same for light that another object may keep from where a
@@ -139,7 +140,7 @@ def csg(
         if 0 <= shared <= FEW:
             across, down, corners = PROBE, PROBE, 4
         target, bright = tolerance, 1.0
-        first, stop = 0, 0
+        first, stop, row = 0, 0, index
         if told:
             first, stop = numbers[turn, 0], numbers[turn, 1]
             across, down, corners = stop - first, 1, 0
@@ -152,7 +153,6 @@ def csg(
         state = seed_of(seed, footprint.x, footprint.y)
         red = green = blue = error = 0.0
         taken = looked = 0
-        departed, inquired = gone[0], asked[0]
         while True:
             red = green = blue = 0.0
             taken = 0
@@ -165,6 +165,7 @@ def csg(
                 if i < 0:
                     u, v = float((-1 - i) & 1), float((-1 - i) >> 1)
                 elif told:
+                    row = EIGHTHS * index + i * EIGHTHS // stop
                     _, u, v = drawn(i, PLACE, seed, footprint.x, footprint.y)
                 else:
                     state, ju = jitter(state)
@@ -220,7 +221,7 @@ def csg(
                         gone[0] += 1
                         for axis in range(3):
                             ray.origin[axis], ray.way[axis], ray.through[axis] = eye[axis], sight[axis], 1.0
-                        ray.footprint, ray.number, ray.bounces, ray.object = index, i, bounces + 1, frame.object
+                        ray.row, ray.number, ray.bounces, ray.object = row, i, bounces + 1, frame.object
                         ray.within, ray.clear = 0, 0.0
                 if not indirect:
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]
@@ -262,7 +263,7 @@ def csg(
                         for axis in range(3):
                             ray.origin[axis], ray.through[axis] = place[axis], colour[axis]
                             ray.way[axis] = lights[l].vector[axis] - (place[axis] if near else 0.0)
-                        ray.footprint, ray.number, ray.object = index, l, frame.object
+                        ray.row, ray.number, ray.object = row, l, frame.object
                         ray.clear = 1.0 - 1e-9 if near else math.inf
                         continue
                     lit |= np.uint64(1) << np.uint64(l)
@@ -275,7 +276,7 @@ def csg(
                         if within:
                             sx, sy, sw = sx - 2.0 * off * n[0], sy - 2.0 * off * n[1], sw - 2.0 * off * n[2]
                         colour = follow(
-                            bounces, through, out, (sx, sy, sw), (0.0, 0.0), within, i, seed, index, footprint.x,
+                            bounces, through, out, (sx, sy, sw), (0.0, 0.0), within, i, seed, row, footprint.x,
                             footprint.y, footprint.blocked, pattern, obj, frame, lighting, materials, slots, albedo,
                             around, spans, leaving, gone,
                         )  # fmt: skip
@@ -288,16 +289,21 @@ def csg(
                         break
                 if i == -1:
                     red = green = blue = 0.0
+                elif told:
+                    taken += 1
+                    radiance[row, 0] += red
+                    radiance[row, 1] += green
+                    radiance[row, 2] += blue
+                    red = green = blue = 0.0
                 elif i >= 0:
                     taken += 1
-                    if not told:
-                        value = (red + green + blue - before) / 3.0
-                        column = i % across
-                        if column > 0:
-                            unlike += (value - last) ** 2
-                        if i >= across:
-                            unlike += (value - above[column]) ** 2
-                        above[column] = last = value
+                    value = (red + green + blue - before) / 3.0
+                    column = i % across
+                    if column > 0:
+                        unlike += (value - last) ** 2
+                    if i >= across:
+                        unlike += (value - above[column]) ** 2
+                    above[column] = last = value
             looked += taken
             if told:
                 break
@@ -319,19 +325,11 @@ def csg(
         if taken == 0:
             method[index] = NOT_MINE
             continue
-        for axis in range(3):
-            for k in range(departed, gone[0]):
-                leaving[k].through[axis] /= taken
-            for k in range(inquired, asked[0]):
-                asking[k].through[axis] /= taken
         method[index] = CSG
-        if not indirect:
-            radiance[index, :] = 0.0
-        radiance[index, 0] += red / taken
-        radiance[index, 1] += green / taken
-        radiance[index, 2] += blue / taken
-        radiance[index, 3] += error / SURE * ease / bright if bright > 0.0 else 0.0
+        if not told:
+            radiance[index, 0], radiance[index, 1], radiance[index, 2] = red / taken, green / taken, blue / taken
+            radiance[index, 3], radiance[index, 4] = error / SURE * ease / bright if bright > 0.0 else 0.0, 0.0
         if curved and not rounded:
-            radiance[index, 3] += unsure(frame, max(p0 - fp0, fp1 - p1, q0 - fq0, fq1 - q1, pattern.width))
-        radiance[index, 4] += float(looked) * max(shared, 1)
+            radiance[row, 3] += unsure(frame, max(p0 - fp0, fp1 - p1, q0 - fq0, fq1 - q1, pattern.width))
+        radiance[row, 4] += float(looked) * max(shared, 1)
     keep(owned)

@@ -27,6 +27,7 @@ from renderer.compile import CompiledScene, PatternCache, compile_scene, table_b
 from renderer.csg import MOST, csg
 from renderer.errors import Cancelled, Fault, RenderError
 from renderer.footprint import Footprints, Tile, flat_frames, footprints
+from renderer.geometry.random import EIGHTHS
 from renderer.geometry.strips import STRIPS
 from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
@@ -238,24 +239,22 @@ class Frame:
     ) -> None:  # fmt: skip
         """Add to footprints' radiance, error and cost what samples find; `auto` takes as many as the tolerance asks.
 
-        sample: adds to (n, 5) the mean radiance of the samples `numbers` (n, 2) of the n footprints of a table, what is
-        known of their error otherwise, and their cost; it needs room for so many `rays` a sample.
+        sample: adds to (EIGHTHS n, 5) the radiance of the samples `numbers` (n, 2) of the n footprints of a table, what
+        is known of their error otherwise, and their cost; it needs room for so many `rays` a sample.
         """
         settings, footprints = self.settings, seen.footprints[chosen]
         adaptive = settings.method == "auto"
         otherwise, cost = np.zeros(len(chosen)), np.zeros(len(chosen))
 
         def draw(which: NDArray[np.int64], numbers: NDArray[np.int64]) -> Floats:
-            found = np.zeros((len(which), 3))
+            found = np.zeros((len(which), EIGHTHS, 5))
             ends = np.flatnonzero(np.diff(np.cumsum(np.diff(numbers)[:, 0] * rays) // RAYS)) + 1
             for some in np.split(np.arange(len(which)), ends):
                 copies = seen._replace(footprints=footprints[which[some]])
-                part = np.zeros((len(some), 5))
-                sample(numbers[some], copies, part)
-                found[some] = part[:, :3]
-                np.maximum.at(otherwise, which[some], part[:, 3])
-                np.add.at(cost, which[some], part[:, 4])
-            return found
+                sample(numbers[some], copies, found[some[0] : some[-1] + 1].reshape(-1, 5))
+            otherwise[which] = np.maximum(otherwise[which], found[..., 3].max(axis=1))
+            cost[which] += found[..., 4].sum(axis=1)
+            return found[..., :3]
 
         made = sampled(
             footprints["pixel"], footprints["weight"],

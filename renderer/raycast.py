@@ -114,14 +114,16 @@ class Caster:
         points = origin + np.where(seen, hits["t"], 0.0)[:, None] * directions
         shade(self.objects, lights, points, own, mask)
         if self._embree is not None:
-            normals = hits["normal"] * np.where(np.sum(hits["normal"] * directions, axis=1) > 0.0, -1.0, 1.0)[:, None]
+            which = np.flatnonzero(seen)
+            points, normals = points[which], hits["normal"][which]
+            normals *= -np.copysign(1.0, np.einsum("ij,ij->i", normals, directions[which]))[:, None]
             start = points + normals * self.start
             for index, light in enumerate(lights):
                 bit, to_light = np.uint64(1) << np.uint64(index), ways(light, points)[0]
-                facing = np.flatnonzero(seen & (mask & bit == 0) & (np.sum(normals * to_light, axis=1) > 0.0))
-                if len(facing):
+                facing = (mask[which] & bit == 0) & (np.einsum("ij,ij->i", normals, to_light) > 0.0)
+                if facing.any():
                     stopped = self._occluded(start[facing], to_light[facing], light["kind"] == POINT)
-                    mask[facing[stopped]] |= bit
+                    mask[which[facing][stopped]] |= bit
         return mask
 
     def blocked_off(self, points: Floats, own: Ints, lights: NDArray[np.void]) -> NDArray[np.uint64]:

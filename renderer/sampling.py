@@ -14,23 +14,25 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from renderer.geometry.random import EIGHTHS
 from renderer.geometry.view import view_of
 from renderer.kernel import borrow, kernel
 from renderer.shading import to_world, white
 from renderer.tables import Camera, Floats, Lighting
 
 FIRST = 32  # of a pixel, to begin with, at least
-EIGHTHS = 8
 EVEN = 0.75  # errors shrink by the number of samples to this power, at least: that of an edge
 EDGE = 0.2  # ... twice what n samples err by of one of a quarter of white, times n^EVEN: over the square root of six
 EIGHTH = EIGHTHS**-0.5  # of what eighths differ by is the error of their mean, were they independent; they are better
 SURE = 0.45  # how much of the tolerance the standard error may take: what is known of the light itself may err too
+LEAST = 0.25  # ... of what parts of a pixel may take, by the roots of their areas, as their errors are independent
 UNSEEN = 0.14  # of white over n: what the parts that no sample has met may be
 LEAP = 8  # as many times the samples are taken in one round, at most
 
 
 Sampler = Callable[[NDArray[np.int64], NDArray[np.int64]], Floats]
-"""The mean radiance (n, 3) of footprints (n,), of the samples (n, 2) of each from the first to before the last."""
+"""What samples of footprints (n,) add up to in each eighth (n, EIGHTHS, 3), radiance: of each those (n, 2) from the
+first to before the last, which make so many in all: the i-th of n is in eighth i EIGHTHS // n."""
 
 
 class Sampled(NamedTuple):
@@ -50,28 +52,26 @@ def sampled(
     its parts one each, at least.
     """
     total = len(weight)
-    eighths = EIGHTHS if tolerance > 0.0 and most >= 2 * EIGHTHS else 1
-    sums, counts = np.zeros((eighths, total, 3)), np.zeros((eighths, total), np.int64)
+    adaptive = tolerance > 0.0 and most >= 2 * EIGHTHS
+    sums, count = np.zeros((total, EIGHTHS, 3)), np.zeros(total, np.int64)
     pixels, group = np.unique(pixel, return_inverse=True)
     groups = len(pixels)
     area = np.bincount(group, weight)
     whiteness = np.bincount(group, weight * bright)
-    target = SURE * tolerance * whiteness / np.sqrt(area)
-    last = 1 << int(math.log2(most)) if eighths > 1 else most
+    target = SURE * tolerance * whiteness / area * np.maximum(np.sqrt(area), LEAST)
+    last = 1 << int(math.log2(most)) if adaptive else most
     wanted = np.full(groups, most)
-    if eighths > 1:  # before that none is done
+    if adaptive:  # before that none is done
         wanted[:] = min(1 << math.ceil(math.log2(max(FIRST, UNSEEN / (SURE * tolerance)))), last)
     taken, error = np.zeros(groups, np.int64), np.zeros(groups)
     going = np.ones(groups, np.bool_)
     while going.any():
         part = np.flatnonzero(going[group])
-        each = np.maximum(np.ceil(wanted[group[part]] * weight[part] / eighths), 1.0).astype(np.int64)
-        _grow(part, each, sums, counts, sample)
-        if eighths == 1:
+        more = np.maximum(np.ceil(wanted[group[part]] * weight[part]), 1.0)
+        _grow(part, np.exp2(np.ceil(np.log2(more))) if adaptive else more, sums, count, sample)
+        if not adaptive:
             break
-        value = (sums.sum(axis=2) / np.maximum(3 * counts, 1))[:, part]
-        found = np.array([np.bincount(group[part], weight[part] * one, groups) for one in value])
-        now = EIGHTH * found.std(axis=0, ddof=1)
+        now = _spread(group[part], groups, weight[part], sums[part], count[part])
         before = error * np.power(np.maximum(taken, 1) / wanted, EVEN)
         now = np.where(taken > 0, np.sqrt(0.5 * (now * now + before * before)), now)
         now = np.hypot(now, UNSEEN * whiteness / wanted)
@@ -79,29 +79,44 @@ def sampled(
         going &= (error > target) & (wanted < last)
         more = np.floor(np.log2(np.maximum(error / np.maximum(target, 1e-300), 1.0)) / EVEN).clip(1, math.log2(LEAP))
         wanted = np.where(going, np.minimum(wanted * np.exp2(more).astype(np.int64), last), wanted)
-    count = counts.sum(axis=0)
     told = np.divide(error, SURE * whiteness, out=np.zeros(groups), where=whiteness > 0.0)
-    return Sampled(sums.sum(axis=0) / np.maximum(count, 1)[:, None], told[group], count)
+    return Sampled(sums.sum(axis=1) / np.maximum(count, 1)[:, None], told[group], count)
 
 
-def _grow(
-    part: NDArray[np.int64], each: NDArray[np.int64], sums: Floats, counts: NDArray[np.int64], sample: Sampler
-) -> None:
-    """Take samples until each eighth of those of the footprints `part` has so many: a power of two, as it had before.
+def _grow(part: NDArray[np.int64], wanted: Floats, sums: Floats, count: NDArray[np.int64], sample: Sampler) -> None:
+    """Take samples until there are so many of the footprints `part`, whose eighths become the first ones."""
+    more = wanted > count[part]
+    if not more.any():
+        return
+    part, before, now = part[more], count[part[more]], wanted[more].astype(np.int64)
+    old = sums[part]
+    sums[part] = sample(part, np.stack([before, now], axis=1))
+    for eighth in range(EIGHTHS):
+        sums[part, eighth * before // now] += old[:, eighth]
+    count[part] = now
 
-    The old eighths become the first ones, by two or four in one or not all of it.
+
+def _spread(
+    group: NDArray[np.int64], groups: int, weight: Floats, sums: Floats, count: NDArray[np.int64]
+) -> Floats:  # fmt: skip
+    """The standard error of what the footprints (n,) of each group add up to, from the sums (n, EIGHTHS, 3) of so many
+    samples.
+
+    Of the smallest parts there are fewer samples than eighths, which share them: one of each, at least. Of these the
+    error is what they differ by among themselves.
     """
-    eighths, column = len(sums), np.arange(len(part))
-    place = np.arange(eighths)[:, None] // np.maximum(each // np.maximum(counts[0, part], 1), 1)
-    had, value = np.zeros((eighths, len(part)), np.int64), np.zeros((eighths, len(part), 3))
-    np.add.at(had, (place, column), counts[:, part])
-    np.add.at(value, (place, column), sums[:, part])
-    eighth, which = np.nonzero(had < each)
-    numbers = np.stack([eighth * each[which] + had[eighth, which], (eighth + 1) * each[which]], axis=1)
-    new = numbers[:, 1] - numbers[:, 0]
-    value[eighth, which] += sample(part[which], numbers) * new[:, None]
-    had[eighth, which] += new
-    sums[:, part], counts[:, part] = value, had
+    eighth = np.arange(EIGHTHS)
+    shared = np.where(count[:, None] < EIGHTHS, eighth * count[:, None] // EIGHTHS * EIGHTHS // count[:, None], eighth)
+    value = np.take_along_axis(sums.sum(axis=2), shared, axis=1) / (3 * np.maximum(count // EIGHTHS, 1))[:, None]
+    found = np.array([np.bincount(group, weight * one, groups) for one in value.T])
+    few = count < EIGHTHS
+    group, weight, value, count = group[few], weight[few], value[few, 0], count[few]
+    area = np.maximum(np.bincount(group, weight, groups), 1e-300)
+    apart = value - (np.bincount(group, weight * value, groups) / area)[group]
+    square = np.bincount(group, weight * apart * apart, groups) / area
+    square *= np.bincount(group, weight * weight / count, groups)
+    error: Floats = np.sqrt(EIGHTH * EIGHTH * found.var(axis=0, ddof=1) + square)
+    return error
 
 
 @kernel

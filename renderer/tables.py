@@ -280,7 +280,7 @@ RAY = np.dtype(
     [
         ("origin", "f8", (3,)), ("way", "f8", (3,)),  # world; `way` is a unit vector
         ("through", "f8", (3,)),  # what radiance from there counts in the footprint, RGB
-        ("footprint", "i8"),  # index
+        ("row", "i8"),  # EIGHTHS times the footprint's index, and which of them its sample is in
         ("number", "i8"),  # of the footprint's samples
         ("bounces", "i4"),  # that are left, the one on what it meets counted
         ("object", "i4"),  # row of OBJECT that it leaves; -1: the camera's

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from renderer.kernel import leaf
+from renderer.kernel import fixed, leaf
 
 WORD = np.uint64(0xFFFFFFFF)  # the bits of coordinates,
 RESOLUTION = 1.0 / 4294967296.0  # and what the last of them is worth
+EIGHTHS = fixed(8)  # into which a place's samples fall, as many each: what they differ by tells the error of their mean
 PLACE = -1  # the step of a path at which its place in the footprint is drawn
 
 

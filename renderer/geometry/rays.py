@@ -60,7 +60,7 @@ def meet_far(
 @callee
 def follow(
     bounces: int, through: Vector, way: Vector, start: Vector, steer: tuple[float, float], within: bool, number: int,
-    seed: int, index: int, px: float, py: float, blocked: np.uint64, pattern: Pattern, obj: np.void, frame: np.void,
+    seed: int, row: int, px: float, py: float, blocked: np.uint64, pattern: Pattern, obj: np.void, frame: np.void,
     lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, found: Nearby,
     spans: Events, leaving: NDArray[np.void], gone: NDArray[np.int64],
 ) -> Vector:  # fmt: skip
@@ -70,8 +70,8 @@ def follow(
     steer: by how much its first slopes to the plane differ from those of `way`, over a mesh. within: it is
     inside the body. Each of a footprint's samples, of that number, draws its own rays; (px, py) is the footprint's
     place on the screen. Where the last one meets the surface, that is lit by all of the sky; from within it shows no
-    light but its own. A ray that leaves the surface meets the sky, or becomes the RAY `leaving[gone[0]]` of footprint
-    `index`, where there is room for any.
+    light but its own. A ray that leaves the surface meets the sky, or becomes the RAY `leaving[gone[0]]` of this `row`,
+    where there is room for any.
     """
     lights = lighting.lights
     rounded = is_round(obj, frame)
@@ -112,7 +112,7 @@ def follow(
                     back = TOUCH * (1.0 + math.sqrt(dot(place, place)))
                 for c in range(3):
                     ray.origin[c], ray.way[c], ray.through[c] = place[c] - back * way[c], way[c], through[c]
-                ray.footprint, ray.number, ray.bounces, ray.object = index, number, left, frame.object
+                ray.row, ray.number, ray.bounces, ray.object = row, number, left, frame.object
                 ray.within = int(within)
                 ray.clear = clear
             elif leaves:

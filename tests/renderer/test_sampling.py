@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from renderer.geometry.random import PLACE, drawn
+from renderer.geometry.random import EIGHTHS, PLACE, drawn
 from renderer.kernel import kernel
-from renderer.sampling import EIGHTHS, FIRST, sampled
+from renderer.sampling import FIRST, sampled
 from renderer.tables import Floats
 
 MOST = 65_536
@@ -20,16 +20,24 @@ Numbers = NDArray[np.int64]
 
 @kernel
 def below_line(which: Numbers, numbers: Numbers, slope: Floats, height: Floats, found: Floats) -> None:
-    """The part of a pixel's samples that lie below a line across it."""
+    """How many of a pixel's samples lie below a line across it, by eighths."""
     for k in range(len(which)):
         for i in range(numbers[k, 0], numbers[k, 1]):
             _, u, v = drawn(i, PLACE, 0, float(which[k]), 0.0)
             if v < height[which[k]] + slope[which[k]] * (u - 0.5):
-                found[k] += 1.0 / (numbers[k, 1] - numbers[k, 0])
+                found[k, i * EIGHTHS // numbers[k, 1]] += 1.0
 
 
 def grey(values: Floats) -> Floats:
-    return np.repeat(values[:, None], 3, axis=1)
+    return np.repeat(values[..., None], 3, axis=-1)
+
+
+def by_eighths(numbers: Numbers) -> Floats:
+    """How many samples (n, EIGHTHS) of `numbers` (n, 2) fall into each eighth."""
+    count = np.zeros((len(numbers), EIGHTHS))
+    for row, (first, stop) in zip(count, numbers, strict=True):
+        row += np.bincount(np.arange(first, stop) * EIGHTHS // stop, minlength=EIGHTHS)
+    return count
 
 
 @pytest.mark.parametrize("most", [1, 7, 16, 100, 4096])
@@ -42,7 +50,8 @@ def test_each_sample_is_taken_once(most: int) -> None:
     def sample(which: Numbers, numbers: Numbers) -> Floats:
         for k, (first, stop) in zip(which, numbers, strict=True):
             taken[k] += range(first, stop)
-        return grey(np.where(which < 4, dice.random(len(which)), 0.5))
+        value = np.where(which[:, None] < 4, dice.random((len(which), EIGHTHS)), 0.5)
+        return grey(by_eighths(numbers) * value)
 
     made = sampled(pixel, weight, np.ones(5), 1e-3, most, sample)
     for k, numbers in enumerate(taken):
@@ -62,7 +71,7 @@ def test_edges_are_within_the_tolerance(tolerance: float, bright: float) -> None
     slope, height = dice.uniform(-0.6, 0.6, count), dice.uniform(0.3, 0.7, count)
 
     def sample(which: Numbers, numbers: Numbers) -> Floats:
-        found = np.zeros(len(which))
+        found = np.zeros((len(which), EIGHTHS))
         below_line(which, numbers, slope, height, found)
         return grey(bright * found)
 
@@ -78,7 +87,8 @@ def independent(spread: float) -> Callable[[Numbers, Numbers], Floats]:
     dice = np.random.default_rng(3)
 
     def sample(which: Numbers, numbers: Numbers) -> Floats:
-        return grey(1.0 + spread * dice.standard_normal(len(which)) / np.sqrt(np.diff(numbers)[:, 0]))
+        count = by_eighths(numbers)
+        return grey(count + spread * dice.standard_normal(count.shape) * np.sqrt(count))
 
     return sample
 
@@ -104,7 +114,7 @@ def test_no_tolerance_no_rounds() -> None:
 
     def sample(which: Numbers, numbers: Numbers) -> Floats:
         calls.append(numbers)
-        return np.ones((len(which), 3))
+        return grey(by_eighths(numbers))
 
     made = sampled(np.zeros(3, np.int32), np.array([0.5, 0.25, 1e-3]), np.ones(3), 0.0, 100, sample)
     assert made.taken.tolist() == [50, 25, 1]
