@@ -356,6 +356,8 @@ def shadow_ray(
     gp, gq = gp / rise, gq / rise
     if rise < 0.0:
         return gp, gq, w, w + rise, DOWN
+    if w >= pattern.height:
+        return gp, gq, w, w, SHADOW
     return gp, gq, high if light[3] == 0.0 else min(high, w + rise), w, SHADOW
 
 
