@@ -189,15 +189,16 @@ def meet(
         hits = shapes.hits(origin, way, own)
         frames, blocked = shapes.frames(origin, way, hits), shapes.blocked(origin, way, hits, lighting.lights)
         leaving, gone = np.empty(len(rays), RAY), np.zeros(1, np.int64)
-        seen, grooved = hits["object"].copy(), frames["grooved"] != 0
-        meet_sky(rays, np.flatnonzero(seen < 0), lighting, radiance)
-        for row in range(len(shapes.objects)):
+        key = 2 * hits["object"] + (frames["grooved"] != 0)
+        order = np.argsort(key, kind="stable")
+        ends = np.searchsorted(key[order], np.arange(2 * len(shapes.objects) + 1))
+        meet_sky(rays, order[: ends[0]], lighting, radiance)
+        for k in np.flatnonzero(np.diff(ends)):
+            row, grooved = divmod(int(k), 2)
             index = shapes.objects["pattern"][row]
-            for pattern, which in ((BARE, ~grooved), (patterns[index] if index >= 0 else BARE, grooved)):
-                chosen = np.flatnonzero((seen == row) & which)
-                if len(chosen):
-                    meet_surface(
-                        seed, pattern, shapes.objects, rays, chosen, frames, blocked, footprints, lighting, materials,
-                        slots[row], albedo, radiance, leaving, gone,
-                    )  # fmt: skip
+            meet_surface(
+                seed, patterns[index] if grooved and index >= 0 else BARE, shapes.objects, rays,
+                order[ends[k] : ends[k + 1]], frames, blocked, footprints, lighting, materials, slots[row], albedo,
+                radiance, leaving, gone,
+            )  # fmt: skip
         rays = leaving[: gone[0]]

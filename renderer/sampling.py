@@ -24,8 +24,8 @@ FIRST = 32  # of a pixel, to begin with, at least
 EVEN = 0.75  # errors shrink by the number of samples to this power, at least: that of an edge
 EDGE = 0.2  # ... twice what n samples err by of one of a quarter of white, times n^EVEN: over the square root of six
 EIGHTH = EIGHTHS**-0.5  # of what eighths differ by is the error of their mean, were they independent; they are better
-SURE = 0.5  # how much of the tolerance the standard error may take: what is known of the light itself may err too
-LEAST = 0.25  # ... of what parts of a pixel may take, by the roots of their areas, as their errors are independent
+SURE = 0.46  # how much of the tolerance the standard error may take: what is known of the light itself may err too
+LEAST = 0.5  # ... of what parts of a pixel may take: by the roots of their areas, as their errors are independent
 UNSEEN = 0.14  # of white over n: what the parts that no sample has met may be
 LEAP = 8  # as many times the samples are taken in one round, at most
 
