@@ -27,6 +27,7 @@ EIGHTH = EIGHTHS**-0.5  # of what eighths differ by is the error of their mean, 
 SURE = 0.46  # how much of the tolerance the standard error may take: what is known of the light itself may err too
 LEAST = 0.5  # ... of what parts of a pixel may take: by the roots of their areas, as their errors are independent
 UNSEEN = 0.14  # of white over n: what the parts that no sample has met may be
+SHARED = np.array([np.arange(8) * n // 8 * 8 // max(n, 1) for n in range(8)])  # of n samples that of each eighth
 LEAP = 8  # as many times the samples are taken in one round, at most
 
 
@@ -89,10 +90,10 @@ def _grow(part: NDArray[np.int64], wanted: Floats, sums: Floats, count: NDArray[
     if not more.any():
         return
     part, before, now = part[more], count[part[more]], wanted[more].astype(np.int64)
-    old = sums[part]
+    old, shrinks = sums[part], before / now
     sums[part] = sample(part, np.stack([before, now], axis=1))
     for eighth in range(EIGHTHS):
-        sums[part, eighth * before // now] += old[:, eighth]
+        sums[part, (eighth * shrinks).astype(np.int64)] += old[:, eighth]
     count[part] = now
 
 
@@ -105,11 +106,11 @@ def _spread(
     Of the smallest parts there are fewer samples than eighths, which share them: one of each, at least. Of these the
     error is what they differ by among themselves.
     """
-    eighth = np.arange(EIGHTHS)
-    shared = np.where(count[:, None] < EIGHTHS, eighth * count[:, None] // EIGHTHS * EIGHTHS // count[:, None], eighth)
-    value = np.take_along_axis(sums.sum(axis=2), shared, axis=1) / (3 * np.maximum(count // EIGHTHS, 1))[:, None]
-    found = np.array([np.bincount(group, weight * one, groups) for one in value.T])
     few = count < EIGHTHS
+    value = sums[..., 0] + sums[..., 1] + sums[..., 2]
+    value[few] = np.take_along_axis(value[few], SHARED[count[few]], axis=1)
+    value *= (1.0 / (3 * np.maximum(count // EIGHTHS, 1)))[:, None]
+    found = np.array([np.bincount(group, weight * one, groups) for one in value.T])
     group, weight, value, count = group[few], weight[few], value[few, 0], count[few]
     area = np.maximum(np.bincount(group, weight, groups), 1e-300)
     apart = value - (np.bincount(group, weight * value, groups) / area)[group]
