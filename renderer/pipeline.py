@@ -40,7 +40,8 @@ from renderer.trace import Truth
 TILE = 64  # pixels
 RAYS = 1 << 14  # from one object to others, at a time
 ROUGH = 0.03  # the error that may be left on meshes' curved bases: next to the terminator light is wrong all over
-FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster
+FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster,
+GLINTS = 0.003  # ... for a tolerance above this: it is what as many samples as that takes leave of a tenth of white
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
 
@@ -292,9 +293,9 @@ class Frame:
             line(MODES.get(settings.method, LOOSE), rough, 0, pattern, footprints, chosen, *rest)
             part.took("line", start)
             left = chosen[method[chosen] == NOT_MINE]
+        most = FEW_STRIPS if settings.method == "auto" and settings.tolerance > GLINTS else STRIPS
         if len(left) and settings.method in ("lines", "area", "auto"):
             start = time.perf_counter()
-            most = FEW_STRIPS if settings.method == "auto" else STRIPS
             flat, ordered = int(part.row) in self.flat, in_blocks(footprints, left)
             if settings.method == "lines":
                 line_sampling(
@@ -305,7 +306,7 @@ class Frame:
             part.took("lines" if settings.method == "lines" else "area", start)
             left = left[method[left] >= CROWDED]
         crowded = left[method[left] == CROWDED]
-        if len(crowded) and settings.method == "auto":
+        if len(crowded) and most < STRIPS:
             left = left[method[left] == NOT_MINE]
             self._sample(part, crowded, sparing=True)
             crowded = in_blocks(footprints, crowded[method[crowded] == NOT_MINE])
