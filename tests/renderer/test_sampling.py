@@ -104,6 +104,18 @@ def test_noise_is_brought_down_to_what_is_asked() -> None:
     assert 1000 < made.taken.mean() < 6000  # (0.5 / 0.01)^2 would do, were it known
 
 
+def test_the_smallest_parts_tell_their_error_together() -> None:
+    """Of a pixel in 64 parts fewer samples than eighths are taken of each, if these are enough."""
+    count, parts = 1000, 64
+    pixel = np.repeat(np.arange(count, dtype=np.int32), parts)
+    made = sampled(pixel, np.full(len(pixel), 1.0 / parts), np.ones(len(pixel)), 0.08, MOST, independent(0.5))
+    off = np.abs(made.mean[:, 0].reshape(count, parts).mean(axis=1) - 1.0)
+    assert made.taken.min() < EIGHTHS
+    assert np.mean(off <= 0.08) >= 0.95 - 2.0 * math.sqrt(0.95 * 0.05 / count)
+    assert np.mean(off <= made.error[::parts]) >= 0.95 - 2.0 * math.sqrt(0.95 * 0.05 / count)
+    assert made.taken.reshape(count, parts).sum(axis=1).mean() < 4.0 * (0.5 / 0.04) ** 2
+
+
 def test_the_most_is_told_where_it_does_not_do() -> None:
     made = sampled(np.zeros(1, np.int32), np.ones(1), np.ones(1), 1e-4, 64, independent(0.5))
     assert made.taken[0] == 64
