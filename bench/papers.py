@@ -38,6 +38,7 @@ KB = 1024
 LADDER = (4, 16, 64, 256)  # samples of geometry's curve
 # Where rays go from object to object.
 AUTO = tuple(Setting("auto", 4096, tolerance=tolerance) for tolerance in (0.01, 0.05, 0.02))
+GLASS = (Setting("csg", 64), *AUTO)
 
 INTRODUCTION = """# The report's figures again
 
@@ -100,12 +101,12 @@ def cases() -> list[Case]:
              (rough, auto, Setting("line"), Setting("csg", 1), Setting("csg", 4),
               Setting("csg", 16), Setting("geometry", 8)), 8, 90.0),
         Case("20 (b)", Said(164, 149), "a grooved glass, what it reflects", figures.glass(2, transmits=False),
-             (Setting("csg", 64), *AUTO, *_geometry(8)), 8, 60.0),
+             (*GLASS, *_geometry(8)), 8, 60.0),
         Case("20 (c)", Said(290, 149), "what shows through it", figures.glass(6, reflects=False),
-             (Setting("csg", 64), *AUTO, *_geometry(8)), 8, 60.0),
-        Case("20 (d)", Said(382, 149), "both", figures.glass(6), (Setting("csg", 64), *AUTO, *_geometry(8)), 8, 60.0),
+             (*GLASS, *_geometry(8)), 8, 60.0),
+        Case("20 (d)", Said(382, 149), "both", figures.glass(6), (*GLASS, *_geometry(8)), 8, 60.0),
         Case("11 (2008)", None, "a grooved ball of glass, of the paper of 2008", figures.ball(),
-             (Setting("csg", 64), *AUTO, *_geometry(8)), 8, 60.0),
+             (*GLASS, *_geometry(8)), 8, 60.0),
         Case("21", Said(81, 863), "a house: nine grooved objects, in a pool and in windows", load("house"),
              (*AUTO, *_geometry(8)), 8, 90.0, lambda name: (EXAMPLES / name).read_bytes()),
     ]  # fmt: skip

@@ -51,13 +51,13 @@ def measure() -> tuple[list[Line], dict[str, Any]]:
     detail: dict[str, Any] = {}
     for name in NAMES:
         print(f"  auto: {name} ...", flush=True)
-        found, detail[name] = _example(load(name), name)
+        found, detail[name] = _example(name)
         lines += [line._replace(what=f"auto, {name} {line.what}") for line in found]
     return lines, detail
 
 
-def _example(scene: schema.Scene, name: str) -> tuple[list[Line], dict[str, Any]]:
-    samples, passes = SAMPLES.get(name, 16_384), PASSES.get(name, (2, 8))
+def _example(name: str) -> tuple[list[Line], dict[str, Any]]:
+    scene, samples, passes = load(name), SAMPLES.get(name, 16_384), PASSES.get(name, (2, 8))
     truth = reference(scene, TRUTH.get(name, "csg"), SIZE, samples, passes, meshes=_file)
     patterns = PatternCache()
     bright = white(scene, patterns)
