@@ -195,9 +195,8 @@ def meet(
         meet_sky(rays, order[: ends[0]], lighting, radiance)
         for k in np.flatnonzero(np.diff(ends)):
             row, grooved = divmod(int(k), 2)
-            index = shapes.objects["pattern"][row]
             meet_surface(
-                seed, patterns[index] if grooved and index >= 0 else BARE, shapes.objects, rays,
+                seed, patterns[shapes.objects["pattern"][row]] if grooved else BARE, shapes.objects, rays,
                 order[ends[k] : ends[k + 1]], frames, blocked, footprints, lighting, materials, slots[row], albedo,
                 radiance, leaving, gone,
             )  # fmt: skip

@@ -19,6 +19,7 @@ from renderer.geometry.curve import is_curved, turned, unsure
 from renderer.geometry.query import find, nearby
 from renderer.geometry.random import EIGHTHS, PLACE, drawn, jitter, seed_of
 from renderer.geometry.rays import follow
+from renderer.geometry.shapes import NEXT_TO
 from renderer.geometry.shell import STRAY, is_round, is_shaded, placed, raised, seen_from
 from renderer.geometry.solid import DOWN, lift, meet, normal_of, polish, shadow_ray, thin_of
 from renderer.geometry.spans import END, PLANE, events
@@ -264,7 +265,7 @@ def csg(
                             ray.origin[axis], ray.through[axis] = place[axis], colour[axis]
                             ray.way[axis] = lights[l].vector[axis] - (place[axis] if near else 0.0)
                         ray.row, ray.number, ray.object = row, l, frame.object
-                        ray.clear = 1.0 - 1e-9 if near else math.inf
+                        ray.clear = NEXT_TO if near else math.inf
                         continue
                     lit |= np.uint64(1) << np.uint64(l)
                     red, green, blue = red + colour[0], green + colour[1], blue + colour[2]

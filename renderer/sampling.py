@@ -27,8 +27,9 @@ EIGHTH = EIGHTHS**-0.5  # of what eighths differ by is the error of their mean, 
 SURE = 0.46  # how much of the tolerance the standard error may take: what is known of the light itself may err too
 LEAST = 0.5  # ... of what parts of a pixel may take: by the roots of their areas, as their errors are independent
 UNSEEN = 0.14  # of white over n: what the parts that no sample has met may be
-SHARED = np.array([np.arange(8) * n // 8 * 8 // max(n, 1) for n in range(8)])  # of n samples that of each eighth
 LEAP = 8  # as many times the samples are taken in one round, at most
+# (EIGHTHS, EIGHTHS) of n samples, fewer than there are eighths, the eighth of the one that each shares
+SHARED = np.array([np.arange(EIGHTHS) * n // EIGHTHS * EIGHTHS // max(n, 1) for n in range(EIGHTHS)])
 
 
 Sampler = Callable[[NDArray[np.int64], NDArray[np.int64]], Floats]
