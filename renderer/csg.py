@@ -49,7 +49,8 @@ WORTH = 32  # ... of which, sparing, it takes no more than WORTH * WORTH: exact 
 GRAINY = 0.01  # the tolerance, at least, where a curved base makes rays bend much: many footprints at low light
 BENT = 0.3  # ... by this part of its slope
 UNSEEN = 0.1  # of white over n: what the parts that no sample has met may be
-STRATIFIED = 0.72  # of what sets neighbours apart is a stratum's own error: an edge between two counts (measured)
+STRATIFIED = 0.72  # of what sets neighbours apart is a stratum's own error: an edge between two counts (measured);
+# all of it is, where neighbours are as far apart as any two samples: strata that each hold many grooves
 SURE = 0.5  # how much of the tolerance the standard error may take
 BOWED = 0.15  # so far chords may be from rays on round shapes, times the tolerance, in pixels' least widths
 SHADED = 4.0  # ... and those of shadows this times as far
@@ -157,7 +158,7 @@ def csg(
         while True:
             red = green = blue = 0.0
             taken = 0
-            unlike = 0.0
+            unlike = squares = 0.0
             last = 0.0
             alike = True
             first_facet, first_found, first_lit = 0, 0, np.uint64(0)
@@ -299,6 +300,7 @@ def csg(
                 elif i >= 0:
                     taken += 1
                     value = (red + green + blue - before) / 3.0
+                    squares += value * value
                     column = i % across
                     if column > 0:
                         unlike += (value - last) ** 2
@@ -310,7 +312,10 @@ def csg(
                 break
             if corners == 0 or alike:
                 pairs = across * (down - 1) + down * (across - 1)
-                error = STRATIFIED * math.sqrt(unlike / (2.0 * pairs) / taken)
+                apart_by, mean = unlike / (2.0 * pairs), (red + green + blue) / (3.0 * taken)
+                spread = squares / taken - mean * mean
+                own = STRATIFIED + (1.0 - STRATIFIED) * apart_by / max(apart_by, spread, 1e-300)
+                error = own * math.sqrt(apart_by / taken)
                 if corners == 0:
                     error = math.hypot(error, UNSEEN * bright / taken)
                 if error <= target or across >= most:

@@ -40,7 +40,7 @@ SEARCH = 1024
 tiles that a ray which has met nothing there runs along free lanes."""
 
 LEVEL = 1e-6  # a ray's slope to the plane is taken for at least this
-THIN = 1e-7  # solid thinner than this part of the pattern's height range, or width, is rounding, not matter
+THIN = 1e-8  # solid thinner than this part of the pattern's height range, or width, is rounding, not matter
 
 
 DOWN, UP, SHADOW = fixed(0), fixed(1), fixed(2)  # where a ray goes,
