@@ -124,7 +124,7 @@ def meet_surface(
             start, steer = (p + w * gp, q + w * gq, w), (gp - slope_p, gq - slope_q)
         before = gone[0]
         colour = follow(
-            ray.bounces, (ray.through[0], ray.through[1], ray.through[2]), way, start, steer,
+            ray.bounces, False, (ray.through[0], ray.through[1], ray.through[2]), way, start, steer,
             frame.within == 1, ray.number, seed, ray.row, footprint.x, footprint.y, blocked[k], pattern, obj,
             frame, lighting, materials, slots, albedo, found, spans, leaving, gone,
         )  # fmt: skip

@@ -26,7 +26,7 @@ from renderer.geometry.spans import END, PLANE, events
 from renderer.geometry.straight import light_over, sight_over, straightened
 from renderer.geometry.view import on_plane, thinnest, through_screen, view_of
 from renderer.kernel import borrow, fixed, keep, kernel
-from renderer.scattering import scatter
+from renderer.scattering import is_mirrored, scatter
 from renderer.shading import (
     ambient,
     dot,
@@ -58,7 +58,7 @@ SHADED = 4.0  # ... and those of shadows this times as far
 
 @kernel
 def csg(
-    numbers: NDArray[np.int64], bounces: int, indirect: bool, tolerance: float, sparing: bool, seed: int,
+    numbers: NDArray[np.int64], bounces: int, indirect: bool, shown: bool, tolerance: float, sparing: bool, seed: int,
     leaving: NDArray[np.void], gone: NDArray[np.int64], asking: NDArray[np.void], asked: NDArray[np.int64],
     pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64], objects: NDArray[np.void],
     frames: NDArray[np.void], camera: Camera, lighting: Lighting, materials: NDArray[np.void],
@@ -69,12 +69,12 @@ def csg(
     numbers: (n, 2) the samples to take of each, from the first to before the last, which are spread evenly, the first n
     for every n. What those of an eighth of the first to the last add up to is added to radiance (EIGHTHS n, 5). Where
     there are none, as many as the tolerance asks for, with no bounces, for their mean. sparing: NOT_MINE, where that is
-    more than it is worth. tolerance: relative to a white surface in the same light; on round
-    shapes rays keep to their curves as it asks. bounces: how often light is followed from facet to facet; indirect:
-    that light alone, added to what is there. leaving: room for each sample's RAY (`rays.follow`), if others are to meet
-    them; `gone` (1,) is how many there are. asking, asked: the same for light that another object may keep from where a
-    footprint is `torn`; its `number` is the light's. slots: rows of `materials` for the pattern's facets, the object's
-    own first.
+    more than it is worth. tolerance: relative to a white surface in the same light; on round shapes rays keep to their
+    curves as it asks. bounces: how often light is followed from facet to facet; indirect: that light alone, added to
+    what is there; shown: without what mirrors show one another, which is there too. leaving: room for each sample's RAY
+    (`rays.follow`), if others are to meet them; `gone` (1,) is how many there are. asking, asked: the same for light
+    that another object may keep from where a footprint is `torn`; its `number` is the light's. slots: rows of
+    `materials` for the pattern's facets, the object's own first.
     """
     capacity = max(pattern.near, SHARED)
     owned = nearby(pattern, capacity), events(pattern), nearby(pattern, capacity)
@@ -275,10 +275,11 @@ def csg(
                     out, through = scatter(material, albedo, n_world, e, lobe, bu, bv, False)
                     if max(through[0], through[1], through[2]) > 0.0:
                         within = dot(n_world, out) < 0.0
+                        known = shown and is_mirrored(material, n_world, e, out)
                         if within:
                             sx, sy, sw = sx - 2.0 * off * n[0], sy - 2.0 * off * n[1], sw - 2.0 * off * n[2]
                         colour = follow(
-                            bounces, through, out, (sx, sy, sw), (0.0, 0.0), within, i, seed, row, footprint.x,
+                            bounces, known, through, out, (sx, sy, sw), (0.0, 0.0), within, i, seed, row, footprint.x,
                             footprint.y, footprint.blocked, pattern, obj, frame, lighting, materials, slots, albedo,
                             around, spans, leaving, gone,
                         )  # fmt: skip

@@ -215,7 +215,8 @@ def line(
     shows, gathers = answer & MIRROR != 0, answer & DIFFUSE != 0
     samples = answer & GLOSSY != 0 or (shows and gathers and (bounces > 1 or not bare))
     samples = samples or (gathers and has_picture(lighting))
-    beyond = BEYOND * pattern.width if gathers else 0.0
+    mutual = BEYOND * pattern.width if gathers else 0.0
+    diagonal = math.hypot(pattern.width, pattern.depth)
     ridged = pattern.height > 0.0
     if has_picture(lighting) and answer & (MIRROR | GLOSSY) != 0:  # of which rays get more than a few directions
         for index in chosen:
@@ -253,6 +254,9 @@ def line(
             if lamp < NEAR_LAMP * pattern.width:
                 continue
         eye_p, eye_q = (frame.eye[0] - view.p) / eye_w, (frame.eye[1] - view.q) / eye_w
+        beyond = mutual
+        if shows:  # mirrors leave the part of a ray's way along T as it is: it gets so far while it crosses a groove
+            beyond = max(mutual, pattern.width + bounces * diagonal * math.hypot(eye_p, eye_q))
         grooves, entries, crooked = 0, 0, 0.0
         if not paper and clear and len(pattern.families) > 0 and eye_w > LEVEL * pattern.height:
             grooves, entries, crooked, r = fold_within(curved, beyond, pattern, frame, view, lights, work)

@@ -250,7 +250,7 @@ def line_sampling(
     near, or where the intervals of a line do not cover it. slots: rows of `materials` for the pattern's facets, the
     object's own first.
     """
-    owned = local_of(pattern), seen_of(len(lighting.lights)), samples_of()
+    owned = local_of(pattern), seen_of(len(lighting.lights), FACES), samples_of()
     local, seen, samples = borrow(owned[0]), borrow(owned[1]), borrow(owned[2])
     found, faces, square = local.found, local.faces, local.square[0]
     pattern, frames, lighting, camera = borrow(pattern), borrow(frames), borrow(lighting), borrow(camera)
@@ -262,7 +262,7 @@ def line_sampling(
         footprint = footprints[index]
         frame = frames[footprint.frame]
         method[index] = NOT_MINE
-        if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, local, seen) == FULL:
+        if see(pattern, frame, footprint, flat, camera, lights, tolerance, most, 0.0, local, seen) == FULL:
             continue
         x0, y0, size = footprint.x, footprint.y, footprint.size
         state = seed_of(seed, x0, y0)

@@ -34,7 +34,8 @@ from renderer.lines import line_sampling
 from renderer.raycast import Caster
 from renderer.relief import Textures
 from renderer.sampling import EDGE, EVEN, FIRST, sampled, whiteness
-from renderer.tables import BARE, BASE, CROWDED, CSG, MESH, NOT_MINE, RAY, Floats, Lighting, Pattern
+from renderer.shading import MIRROR, answers
+from renderer.tables import AREA, BARE, BASE, CROWDED, CSG, MESH, NOT_MINE, RAY, Floats, Lighting, Pattern
 from renderer.trace import Truth
 
 TILE = 64  # pixels
@@ -190,15 +191,20 @@ class Frame:
             return
         if not self.rays_go_on:
             start = time.perf_counter()
-            mode, rough = MODES.get(settings.method, LOOSE), self._rough(row)
-            line(mode, rough, settings.bounces, pattern, seen.footprints, chosen, *self._of(part))
+            exact = settings.method in ("lines", "area") and pattern is not BARE
+            mode = STRICT if exact else MODES.get(settings.method, LOOSE)
+            line(mode, self._rough(row), settings.bounces, pattern, seen.footprints, chosen, *self._of(part))
             part.took("line", start)
             chosen = chosen[method[chosen] == NOT_MINE]
         if len(chosen):
             lights, sky, around, _ = scene.lighting
             alone = Lighting(lights, np.zeros(3), left=float(sky.mean()) + around.white)
-            self._direct(part._replace(lighting=alone), chosen)
-            self._sample(part, chosen, settings.bounces, indirect=True)
+            shown = self._mirrors(part._replace(lighting=alone), chosen)
+            left = chosen[method[chosen] != AREA]
+            self._direct(part._replace(lighting=alone), left)
+            if answers(scene.materials, scene.slots[row]) != MIRROR:
+                self._sample(part, chosen[shown], settings.bounces, indirect=True, shown=True)
+            self._sample(part, chosen[~shown], settings.bounces, indirect=True)
 
     def _of(self, part: Part) -> tuple[Any, ...]:
         """What all kernels take after the footprints."""
@@ -293,6 +299,7 @@ class Frame:
             line(MODES.get(settings.method, LOOSE), rough, 0, pattern, footprints, chosen, *rest)
             part.took("line", start)
             left = chosen[method[chosen] == NOT_MINE]
+        none = 0, part.lighting, np.zeros(0, np.bool_)  # of what `_mirrors` does
         most = FEW_STRIPS if settings.method == "auto" and settings.tolerance > GLINTS else STRIPS
         if len(left) and settings.method in ("lines", "area", "auto"):
             start = time.perf_counter()
@@ -302,7 +309,7 @@ class Frame:
                     settings.samples, settings.seed, settings.tolerance, most, flat, pattern, footprints, ordered, *rest
                 )
             else:
-                area_sampling(settings.tolerance, rough, most, flat, pattern, footprints, ordered, *rest)
+                area_sampling(settings.tolerance, rough, most, flat, *none, pattern, footprints, ordered, *rest)
             part.took("lines" if settings.method == "lines" else "area", start)
             left = left[method[left] >= CROWDED]
         crowded = left[method[left] == CROWDED]
@@ -312,19 +319,40 @@ class Frame:
             crowded = in_blocks(footprints, crowded[method[crowded] == NOT_MINE])
             start = time.perf_counter()  # with as many strips as there is room for, where samples do not do
             area_sampling(
-                settings.tolerance, rough, STRIPS, int(part.row) in self.flat, pattern, footprints, crowded, *rest
-            )
+                settings.tolerance, rough, STRIPS, int(part.row) in self.flat, *none, pattern, footprints, crowded,
+                *rest,
+            )  # fmt: skip
             part.took("area", start)
             left = np.concatenate([left, crowded[method[crowded] >= CROWDED]])
         if len(left):
             self._sample(part, left)
 
+    def _mirrors(self, part: Part, chosen: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Shade footprints by exact areas, direct light and what mirrors show: of which both are done (n,)."""
+        scene, settings = self.scene, self.settings
+        shown = np.zeros(len(part.seen.footprints), np.bool_)
+        flat = int(part.row) in self.flat and part.pattern is not BARE
+        follows = (
+            settings.method in ("auto", "area") and not self.rays_go_on and not len(scene.lighting.surroundings.tables)
+        )
+        part.method[chosen] = NOT_MINE
+        if flat and follows and answers(scene.materials, scene.slots[part.row]) & MIRROR:
+            start = time.perf_counter()
+            area_sampling(
+                settings.tolerance, self._rough(part.row), FEW_STRIPS, True, settings.bounces, scene.lighting, shown,
+                part.pattern, part.seen.footprints, in_blocks(part.seen.footprints, chosen), *self._of(part),
+            )  # fmt: skip
+            part.took("area", start)
+        return shown[chosen]
+
     def _sample(
-        self, part: Part, chosen: NDArray[np.int64], bounces: int = 0, *, indirect: bool = False, sparing: bool = False,
+        self, part: Part, chosen: NDArray[np.int64], bounces: int = 0, *, indirect: bool = False, shown: bool = False,
+        sparing: bool = False,
     ) -> None:  # fmt: skip
         """Shade footprints by `csg`; rays go from facet to facet, and on to other objects if there are any.
 
-        indirect: add what these bring to what is there. Of what is torn or open, all of `chosen` or nothing.
+        indirect: add what these bring to what is there; shown: but for what mirrors show one another. Of what is torn
+        or open, all of `chosen` or nothing.
         """
         settings, footprints = self.settings, part.seen.footprints
         goes = self.rays_go_on and (bounces > 0 or bool(footprints["open"][chosen].any()))
@@ -333,7 +361,7 @@ class Frame:
             start = time.perf_counter()
             none = np.zeros(0, RAY), np.zeros(1, np.int64)
             csg(
-                np.zeros((0, 2), np.int64), 0, False, settings.tolerance, sparing, settings.seed, *none, *none,
+                np.zeros((0, 2), np.int64), 0, False, False, settings.tolerance, sparing, settings.seed, *none, *none,
                 part.pattern, footprints, chosen, self.scene.objects, *self._of(part),
             )  # fmt: skip
             part.took("csg", start)
@@ -348,8 +376,8 @@ class Frame:
             asking, asked = np.empty(room * asks, RAY), np.zeros(1, np.int64)
             mine = part._replace(seen=copies, radiance=found, method=np.empty(len(which), np.uint8))
             csg(
-                numbers, bounces, indirect, fine, False, settings.seed, leaving, gone, asking, asked, part.pattern,
-                copies.footprints, which, self.scene.objects, *self._of(mine),
+                numbers, bounces, indirect, shown, fine, False, settings.seed, leaving, gone, asking, asked,
+                part.pattern, copies.footprints, which, self.scene.objects, *self._of(mine),
             )  # fmt: skip
             part.took("csg", start)
             start = time.perf_counter()

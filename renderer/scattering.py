@@ -67,6 +67,13 @@ def mirrored_by(h: Vector, e: Vector) -> Vector:
 
 
 @leaf
+def is_mirrored(material: np.void, n: Vector, e: Vector, way: Vector) -> bool:
+    """Whether `scatter` has drawn the direction of an ideal mirror."""
+    mirror = mirrored_by(n, e)
+    return bool(material.alpha == 0.0) and mirror[0] == way[0] and mirror[1] == way[1] and mirror[2] == way[2]
+
+
+@leaf
 def refracted(h: Vector, e: Vector, eta: float) -> Vector:
     """Where E comes from through a facet of normal h on its side: eta is the index on this side over the other's.
 

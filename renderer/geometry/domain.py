@@ -56,8 +56,9 @@ def aim(view: View, source: Floats, domain: Domain) -> None:
 
 
 @leaf
-def spread(pattern: Pattern, view: View, source: Floats, margin: float, domain: Domain) -> bool:
-    """Write the slabs of a footprint along the axes chosen; False where they have no end."""
+def spread(pattern: Pattern, view: View, source: Floats, margin: float, far: float, domain: Domain) -> bool:
+    """Write the slabs of a footprint along the axes chosen, by this part of them and so far wider on either side; False
+    where they have no end."""
     high, low, eye = pattern.height, -pattern.depth, source[len(source) - 1]
     n, slab = domain.made[0], domain.slab
     for k in range(n):
@@ -81,7 +82,7 @@ def spread(pattern: Pattern, view: View, source: Floats, margin: float, domain: 
                 slab[k, 0], slab[k, 1] = min(slab[k, 0], along), max(slab[k, 1], along)
     finite = True
     for k in range(n):
-        wide = margin * (slab[k, 1] - slab[k, 0])
+        wide = margin * (slab[k, 1] - slab[k, 0]) + far
         slab[k, 0], slab[k, 1] = slab[k, 0] - wide, slab[k, 1] + wide
         finite = finite and slab[k, 1] - slab[k, 0] < math.inf
     return finite

@@ -57,12 +57,13 @@ HELD, MADE, FULL = 0, 1, 2
 @leaf
 def surround(
     pattern: Pattern, frame: np.void, footprint: np.void, flat: bool, camera: Camera, lights: NDArray[np.void],
-    tolerance: float, most: int, source: Floats, local: Local,
+    tolerance: float, most: int, far: float, source: Floats, local: Local,
 ) -> tuple[int, View]:  # fmt: skip
     """See to it that the faces hold all that a footprint needs: HELD as they were, MADE anew, or FULL, where that takes
     more than `most` strips, or is more than there is room for. The view is that of the square which they are made for.
 
-    flat: its frame is that of all footprints. source: (lights + 1, 4) where straight rays come from (`straighten`).
+    flat: its frame is that of all footprints. far: how much farther than what is seen, hides and shades they reach.
+    source: (lights + 1, 4) where straight rays come from (`straighten`).
     """
     square, at = local.square[0], local.at
     view = view_of(footprint, frame, camera)
@@ -90,7 +91,7 @@ def surround(
                 at[j, 0] = math.inf
         aim(view, source, local.domain)
         size = thinnest(view, 1.0 / max(side, 1))
-        finite = spread(pattern, view, source, BOWED_MARGIN if is_curved(frame) else 0.0, local.domain)
+        finite = spread(pattern, view, source, BOWED_MARGIN if is_curved(frame) else 0.0, far, local.domain)
         if finite and make(pattern, size, FEW[k], tolerance, most, local):
             at[k, 2] = 1.0
             return MADE, view

@@ -29,7 +29,7 @@ from renderer.geometry.solid import (
 )
 from renderer.geometry.spans import BODY, PLANE, Events
 from renderer.kernel import callee
-from renderer.scattering import TOUCH, scatter
+from renderer.scattering import TOUCH, is_mirrored, scatter
 from renderer.shading import (
     Vector,
     ambient,
@@ -42,6 +42,8 @@ from renderer.shading import (
     to_world,
 )
 from renderer.tables import Floats, Lighting, Pattern
+
+STRAYED = 4.0 * STRAY  # of chords, once a ray has met a facet: what is seen in that has no edge of a pixel's in it
 
 
 @callee
@@ -59,16 +61,17 @@ def meet_far(
 
 @callee
 def follow(
-    bounces: int, through: Vector, way: Vector, start: Vector, steer: tuple[float, float], within: bool, number: int,
-    seed: int, row: int, px: float, py: float, blocked: np.uint64, pattern: Pattern, obj: np.void, frame: np.void,
-    lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, found: Nearby,
-    spans: Events, leaving: NDArray[np.void], gone: NDArray[np.int64],
+    bounces: int, shown: bool, through: Vector, way: Vector, start: Vector, steer: tuple[float, float], within: bool,
+    number: int, seed: int, row: int, px: float, py: float, blocked: np.uint64, pattern: Pattern, obj: np.void,
+    frame: np.void, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats,
+    found: Nearby, spans: Events, leaving: NDArray[np.void], gone: NDArray[np.int64],
 ) -> Vector:  # fmt: skip
     """What comes back along the ray that leaves `start` (off the surface, pattern space) by `way` (unit, world), times
     `through`, RGB: the light of what it meets, and of what the rays from there meet, up to so many `bounces`.
 
-    steer: by how much its first slopes to the plane differ from those of `way`, over a mesh. within: it is
-    inside the body. Each of a footprint's samples, of that number, draws its own rays; (px, py) is the footprint's
+    shown: the light of what is met first is known, and so is what mirrors send on from there: both are left out.
+    steer: by how much its first slopes to the plane differ from those of `way`, over a mesh. within: it is inside the
+    body. Each of a footprint's samples, of that number, draws its own rays; (px, py) is the footprint's
     place on the screen. Where the last one meets the surface, that is lit by all of the sky; from within it shows no
     light but its own. A ray that leaves the surface meets the sky, or becomes the RAY `leaving[gone[0]]` of this `row`,
     where there is room for any.
@@ -76,7 +79,7 @@ def follow(
     lights = lighting.lights
     rounded = is_round(obj, frame)
     curved = not rounded and is_curved(frame)
-    stray = STRAY * (pattern.height + pattern.depth)
+    stray = STRAYED * (pattern.height + pattern.depth)
     red = green = blue = 0.0
     emerged = False
     x, y, w = start
@@ -115,7 +118,7 @@ def follow(
                 ray.row, ray.number, ray.bounces, ray.object = row, number, left, frame.object
                 ray.within = int(within)
                 ray.clear = clear
-            elif leaves:
+            elif leaves and not shown:
                 sky = sky_from(lighting, way)
                 red, green, blue = red + through[0] * sky[0], green + through[1] * sky[1], blue + through[2] * sky[2]
             break
@@ -145,7 +148,7 @@ def follow(
         colour = (material.emissive[0], material.emissive[1], material.emissive[2])
         if last and not within:
             colour = ambient(material, lighting, albedo, n, e)
-        for l in range(0 if within else len(lights)):
+        for l in range(0 if within or shown else len(lights)):
             if (blocked >> np.uint64(l)) & np.uint64(1):
                 continue
             lit = lit_by(lights[l], material, n, e, at)
@@ -161,11 +164,14 @@ def follow(
                 shaded = meet_far(pattern, found, spans, x, y, w, lp, lq, top, bottom, sense).w > -math.inf
             if not shaded:
                 colour = (colour[0] + lit[0], colour[1] + lit[1], colour[2] + lit[2])
-        red, green, blue = red + through[0] * colour[0], green + through[1] * colour[1], blue + through[2] * colour[2]
+        if not shown:
+            red, green = red + through[0] * colour[0], green + through[1] * colour[1]
+            blue = blue + through[2] * colour[2]
         if last:
             break
         lobe, u, v = drawn(number, left, seed, px, py)
         way, weight = scatter(material, albedo, n, e, lobe, u, v, within)
+        shown = shown and is_mirrored(material, n, e, way)
         emerged = dot(n, way) < 0.0 and within
         if dot(n, way) < 0.0:  # through the facet
             within = not within

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.curve import applied, is_curved, turned
-from renderer.geometry.faces import FACES, Faces
+from renderer.geometry.faces import Faces
 from renderer.geometry.graze import graze
 from renderer.geometry.local import FULL, MADE, Local, surround
 from renderer.geometry.polygon import CORNERS, Counts
@@ -36,6 +36,8 @@ class Seen(NamedTuple):
     """
 
     made: Counts  # (1,) half-planes so far
+    eye: Floats  # (3,) where the light goes
+    mirror: Counts  # (1,) the face that all is seen in; -1: none
     ray: Floats  # (3, 3) the ray's direction through (x, y): ray (x, y, 1)
     back: Floats  # (3, 3) its inverse
     source: Floats  # (sources, 4) D_p, D_q, D_w, h
@@ -60,28 +62,31 @@ class Seen(NamedTuple):
 
 
 @leaf
-def seen_of(lights: int) -> Seen:
+def seen_of(lights: int, most: int) -> Seen:
+    """Memory for as many faces as `most`."""
     n = lights + 1
     return Seen(
-        np.zeros(1, np.int64), np.empty((3, 3)), np.empty((3, 3)), np.empty((n, 4)), np.empty((n, 4)),
-        np.empty((n, 4)), np.empty(4), np.empty(3), np.zeros(1, np.int64), np.empty((FACES, CORNERS, 3)),
-        np.empty((FACES, 4)), np.empty((FACES, 3)), np.empty((n, FACES)), np.empty((n, FACES), np.int64),
-        np.zeros(n, np.int64), np.empty((n, FACES, 4)), np.empty((n, FACES), np.int64), np.zeros(n, np.int64),
-        np.full((n, FACES, 2), -1, np.int64), np.empty((HALVES, 4)),
-        np.empty((FACES, n, 3)), np.full(FACES, -1, np.int64),
+        np.zeros(1, np.int64), np.empty(3), np.full(1, -1, np.int64), np.empty((3, 3)), np.empty((3, 3)),
+        np.empty((n, 4)), np.empty((n, 4)), np.empty((n, 4)), np.empty(4), np.empty(3), np.zeros(1, np.int64),
+        np.empty((most, CORNERS, 3)), np.empty((most, 4)), np.empty((most, 3)), np.empty((n, most)),
+        np.empty((n, most), np.int64), np.zeros(n, np.int64), np.empty((n, most, 4)), np.empty((n, most), np.int64),
+        np.zeros(n, np.int64), np.full((n, most, 2), -1, np.int64), np.empty((HALVES, 4)), np.empty((most, n, 3)),
+        np.full(most, -1, np.int64),
     )  # fmt: skip
 
 
 @leaf
 def see(
     pattern: Pattern, frame: np.void, footprint: np.void, flat: bool, camera: Camera, lights: NDArray[np.void],
-    tolerance: float, most: int, local: Local, seen: Seen,
+    tolerance: float, most: int, far: float, local: Local, seen: Seen,
 ) -> int:  # fmt: skip
     """Make ready the faces that a footprint needs, and how they are seen: HELD, MADE or FULL, as `surround`.
 
-    flat: its frame is that of all footprints.
+    flat: its frame is that of all footprints. far: as there.
     """
-    held, view = surround(pattern, frame, footprint, flat, camera, lights, tolerance, most, seen.source, local)
+    held, view = surround(pattern, frame, footprint, flat, camera, lights, tolerance, most, far, seen.source, local)
+    for k in range(3):
+        seen.eye[k] = frame.eye[k]
     if held == MADE:
         lower(view.p, view.q, frame, lights, seen)
     if held == MADE and not look(view, local.square[0], lights, local.faces, seen):
@@ -126,7 +131,8 @@ def lower(p: float, q: float, frame: np.void, lights: NDArray[np.void], seen: Se
 
 @leaf
 def look(view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces, seen: Seen) -> bool:
-    """See the faces from a footprint's `seen.source`: fill the rest of `seen`. False where the eye is on the plane."""
+    """See the faces from a footprint's `seen.source`: fill `seen.ray`, and what depends on it. False where the eye is
+    on the plane."""
     ray, back = seen.ray, seen.back
     d0, d1, d2 = seen.source[len(lights), 0], seen.source[len(lights), 1], seen.source[len(lights), 2]
     # towards the point (P / W, Q / W, 0) of the plane, W < 0 (view), from the footprint's square to pixels
@@ -153,7 +159,16 @@ def look(view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces,
     back[0, 2] = (ray[0, 1] * ray[1, 2] - ray[0, 2] * ray[1, 1]) / det
     back[1, 2] = (ray[0, 2] * ray[1, 0] - ray[0, 0] * ray[1, 2]) / det
     back[2, 2] = (ray[0, 0] * ray[1, 1] - ray[0, 1] * ray[1, 0]) / det
-    n, eye = faces.made[0], len(lights)
+    look_along(faces, seen)
+    return True
+
+
+@leaf
+def look_along(faces: Faces, seen: Seen) -> None:
+    """See the faces from `seen.source` along `seen.ray`: fill what depends on these."""
+    ray, back = seen.ray, seen.back
+    n, eye = faces.made[0], len(seen.source) - 1
+    d0, d1, d2 = seen.source[eye, 0], seen.source[eye, 1], seen.source[eye, 2]
     seen.made[0] = 0
     for s in range(eye + 1):
         count = 0
@@ -212,7 +227,6 @@ def look(view: View, footprint: np.void, lights: NDArray[np.void], faces: Faces,
                     back[1, 0] * x0 + back[1, 1] * x1 + back[1, 2] * x2,
                     back[2, 0] * x0 + back[2, 1] * x1 + back[2, 2] * x2,
                 )  # fmt: skip
-    return True
 
 
 @leaf
@@ -330,7 +344,10 @@ def hidden_by(
 ) -> int:
     """Write the half-planes of what face b keeps from source s of face f, in the footprint's square, 0 to 1, to
     `planes` (CORNERS, 3): how many; 0 where it keeps nothing. Negative where there is no room."""
-    if b == f or not may_hide(s, f, b, faces, seen) or not is_before(f, b, faces):
+    mirror = seen.mirror[0] if s == len(seen.source) - 1 else -1
+    if b == f or (mirror >= 0 and not is_before(mirror, b, faces)):
+        return 0
+    if (mirror < 0 and not may_hide(s, f, b, faces, seen)) or not is_before(f, b, faces):
         return 0
     size, near = footprint.size, seen.near[f]
     if seen.pairs[0] == 1 and s < len(seen.source) - 1:
@@ -348,7 +365,21 @@ def hidden_by(
         x, y = h[0] + h[3] * near[0], h[1] + h[3] * near[1]
         planes[i, 0], planes[i, 1] = x * size, y * size
         planes[i, 2] = h[2] + h[3] * near[2] + x * footprint.x + y * footprint.y
+    if mirror >= 0:
+        before(mirror, b, footprint, faces, seen, planes[count])
+        count += 1
     return int(count)
+
+
+@leaf
+def before(mirror: int, f: int, footprint: np.void, faces: Faces, seen: Seen, half: Floats) -> None:
+    """Write the half-plane of the footprint's square through which face f is seen in front of the mirror's plane."""
+    plane, ray, near, eye = faces.plane[mirror], seen.ray, seen.near[f], seen.source[len(seen.source) - 1]
+    from_eye = plane[0] * eye[0] + plane[1] * eye[1] + plane[2] * eye[2] + plane[3]
+    x = plane[0] * ray[0, 0] + plane[1] * ray[1, 0] + plane[2] * ray[2, 0] + from_eye * near[0]
+    y = plane[0] * ray[0, 1] + plane[1] * ray[1, 1] + plane[2] * ray[2, 1] + from_eye * near[1]
+    z = plane[0] * ray[0, 2] + plane[1] * ray[1, 2] + plane[2] * ray[2, 2] + from_eye * near[2]
+    half[0], half[1], half[2] = x * footprint.size, y * footprint.size, z + x * footprint.x + y * footprint.y
 
 
 @leaf
@@ -392,7 +423,7 @@ def colour_at(
         n0, n1, n2 = turned(frame, p - frame.pq[0], q - frame.pq[1], w, (n0, n1, n2))
     n = normal_to_world(frame, (n0, n1, n2))
     at = to_world(frame, p, q, w)
-    eye = to_world(frame, frame.eye[0], frame.eye[1], frame.eye[2])
+    eye = to_world(frame, seen.eye[0], seen.eye[1], seen.eye[2])
     e = unit((eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]))
     if light < 0:
         return ambient(material, lighting, albedo, n, e)

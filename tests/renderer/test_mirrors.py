@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from renderer.tables import CSG, LINE
+from renderer.tables import AREA, CSG, LINE
+
+from .scenes import SINGLE
 
 Json = dict[str, Any]
 Floats = NDArray[np.float64]
@@ -87,6 +89,33 @@ def test_samples_show_what_rays_meet(
     plate: Callable[..., Json], radiance: Callable[..., Floats], grooves: list[Json], bounces: int
 ) -> None:
     compare(radiance, scene(plate, grooves, HALF, bounces, [SUN, LAMP, SKY]), "csg", samples=64)
+
+
+@pytest.mark.parametrize("bounces", [1, 2, 4])
+@pytest.mark.parametrize("material", [CHROME, HALF, COATED], ids=["mirror", "metal", "coat"])
+@pytest.mark.parametrize("grooves", [CROSSED, LIPS], ids=["crossed", "lips"])
+def test_area_shows_what_rays_meet(
+    plate: Callable[..., Json], radiance: Callable[..., Floats], grooves: list[Json], material: Json, bounces: int
+) -> None:
+    """Crossings and ridges, seen in one another; what is matt in part is sampled besides."""
+    data = scene(plate, grooves, material, bounces, [SUN, LAMP, SKY], camera=INSIDE | {"resolution": [32, 24]})
+    data["render"]["tolerance"] = 0.003
+    compare(radiance, data, "area", samples=256)
+
+
+@pytest.mark.parametrize("grooves", [CROSSED, LIPS], ids=["crossed", "lips"])
+def test_crossing_mirrors_are_a_furnace(
+    plate: Callable[..., Json], picture: Callable[..., Any], grooves: list[Json]
+) -> None:
+    """Perfect mirrors show nothing but the sky, however it comes to them, but for what is told to be left out."""
+    white = [{"type": "constant", "radiance": [1, 1, 1]}]
+    data = scene(plate, grooves, PERFECT, 16, white, camera=INSIDE)
+    shown = picture(data, method="area", tolerance=0.003)
+    exact = shown.aovs["method"] == AREA
+    assert exact.mean() > 0.8
+    off = np.abs(shown.radiance - 1.0).max(axis=2)[exact]
+    assert (off <= shown.aovs["error"][exact] + SINGLE).all()
+    assert np.median(off) < SINGLE
 
 
 @pytest.mark.parametrize("method", ["line", "csg", "geometry"])
