@@ -32,6 +32,14 @@ def polished() -> schema.Scene:
     return _scene(told)
 
 
+def mirrors() -> schema.Scene:
+    """Figure 15's tiles as mirrors, in matt mortar: what figure 17 is to figure 14, for crossings."""
+    told = _example("tiles")
+    told["materials"]["tile"] |= {"base_color": [0.9, 0.85, 0.8], "metallic": 1, "roughness": 0}
+    told["render"] |= {"bounces": 1}
+    return _scene(told)
+
+
 def glass(bounces: int, *, reflects: bool = True, transmits: bool = True) -> schema.Scene:
     """Figure 20: a tumbler, cut on the outside, on a tiled floor before two walls."""
     around, height = 2.0 * math.pi * 0.6, 1.6  # of the tumbler: its pattern's units are the world's

@@ -97,6 +97,8 @@ def cases() -> list[Case]:
              figures.farther(), (Setting("lines", 2), Setting("lines", 8), Setting("area"), *_geometry(16)), 16, 110.0),
         Case("17", Said(46, 16, 387, 656), "figure 14 with one mirror bounce inside the grooves", figures.polished(),
              (Setting("line"), Setting("segment"), *_geometry(8)), 8, 110.0),
+        Case("15, mirrored", None, "figure 15's tiles as mirrors, one bounce: no figure of the report",
+             figures.mirrors(), (auto, rough, Setting("csg", 64), *_geometry(8)), 8, 110.0),
         Case("19", Said(31, 486), "records of 500 circles; the report's top left", vinyl,
              (rough, auto, Setting("line"), Setting("csg", 1), Setting("csg", 4),
               Setting("csg", 16), Setting("geometry", 8)), 8, 90.0),

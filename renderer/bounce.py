@@ -16,7 +16,7 @@ from renderer.geometry.curve import is_curved
 from renderer.geometry.query import nearby
 from renderer.geometry.random import EIGHTHS, PLACE, drawn
 from renderer.geometry.rays import follow
-from renderer.geometry.shapes import local
+from renderer.geometry.shapes import arrange, local
 from renderer.geometry.shell import LEVEL, ahead, chart, entered, from_world, is_round
 from renderer.geometry.solid import leveled, thin_of
 from renderer.geometry.spans import events
@@ -189,12 +189,11 @@ def meet(
         hits = shapes.hits(origin, way, own)
         frames, blocked = shapes.frames(origin, way, hits), shapes.blocked(origin, way, hits, lighting.lights)
         leaving, gone = np.empty(len(rays), RAY), np.zeros(1, np.int64)
-        key = 2 * hits["object"] + (frames["grooved"] != 0)
-        order = np.argsort(key, kind="stable")
-        ends = np.searchsorted(key[order], np.arange(2 * len(shapes.objects) + 1))
-        meet_sky(rays, order[: ends[0]], lighting, radiance)
-        for k in np.flatnonzero(np.diff(ends)):
-            row, grooved = divmod(int(k), 2)
+        order, ends = np.empty(len(rays), np.int64), np.empty(2 * len(shapes.objects) + 2, np.int64)
+        arrange(hits, frames, order, ends)
+        meet_sky(rays, order[: ends[1]], lighting, radiance)
+        for k in np.flatnonzero(np.diff(ends[1:])) + 1:
+            row, grooved = divmod(int(k) - 1, 2)
             meet_surface(
                 seed, patterns[shapes.objects["pattern"][row]] if grooved else BARE, shapes.objects, rays,
                 order[ends[k] : ends[k + 1]], frames, blocked, footprints, lighting, materials, slots[row], albedo,

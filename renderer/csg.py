@@ -153,7 +153,7 @@ def csg(
             bright = white(lighting, to_world(frame, view.p, view.q, 0.0))
             target *= SURE / ease * bright
         state = seed_of(seed, footprint.x, footprint.y)
-        red = green = blue = error = 0.0
+        red = green = blue = error = own = 0.0
         taken = looked = 0
         while True:
             red = green = blue = 0.0
@@ -324,7 +324,9 @@ def csg(
             if corners > 0:
                 across, down, corners = begin, begin, 0
                 continue
-            across = int(math.ceil(1.05 * across * min((error / target) ** (2.0 / 3.0), float(MOST))))
+            # errors go with the number of samples to the power of 3/4, or, where strata do not help, of 1/2
+            crowded = (own - STRATIFIED) / (1.0 - STRATIFIED)
+            across = int(math.ceil(1.05 * across * min((error / target) ** ((2.0 + crowded) / 3.0), float(MOST))))
             if sparing and across > WORTH:
                 taken = 0
                 break

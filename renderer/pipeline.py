@@ -41,8 +41,7 @@ from renderer.trace import Truth
 TILE = 64  # pixels
 RAYS = 1 << 14  # from one object to others, at a time
 ROUGH = 0.03  # the error that may be left on meshes' curved bases: next to the terminator light is wrong all over
-FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster,
-GLINTS = 0.003  # ... for a tolerance above this: it is what as many samples as that takes leave of a tenth of white
+FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
 
@@ -300,7 +299,7 @@ class Frame:
             part.took("line", start)
             left = chosen[method[chosen] == NOT_MINE]
         none = 0, part.lighting, np.zeros(0, np.bool_)  # of what `_mirrors` does
-        most = FEW_STRIPS if settings.method == "auto" and settings.tolerance > GLINTS else STRIPS
+        most = FEW_STRIPS if settings.method == "auto" else STRIPS
         if len(left) and settings.method in ("lines", "area", "auto"):
             start = time.perf_counter()
             flat, ordered = int(part.row) in self.flat, in_blocks(footprints, left)

@@ -20,6 +20,7 @@ from renderer.geometry.shapes import (
     cast_triangles,
     frames_at,
     shade,
+    shade_hits,
     shells,
 )
 from renderer.tables import FRAME, HIT, POINT, Floats, Ints
@@ -93,8 +94,8 @@ class Caster:
         return hits
 
     def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> NDArray[np.void]:
-        """The tangent FRAME (n,) at each of the hits (n,); the origin is (3,) or (n, 3)."""
-        frames = np.zeros(len(hits), FRAME)
+        """The tangent FRAME (n,) at each of the hits (n,), anything for a miss; the origin is (3,) or (n, 3)."""
+        frames = np.empty(len(hits), FRAME)
         origins = np.ascontiguousarray(np.broadcast_to(origin, directions.shape))
         frames_at(self.objects, self.triangles, origins, directions, hits, self.bent, frames)
         return frames
@@ -109,13 +110,12 @@ class Caster:
         mask = np.zeros(len(hits), np.uint64)
         if not self.shadows:
             return mask
-        own = hits["object"].astype(np.int32)
-        seen = own >= 0
-        points = origin + np.where(seen, hits["t"], 0.0)[:, None] * directions
-        shade(self.objects, lights, points, own, mask)
+        origins = np.ascontiguousarray(np.broadcast_to(origin, directions.shape))
+        shade_hits(self.objects, lights, origins, directions, hits, mask)
         if self._embree is not None:
-            which = np.flatnonzero(seen)
-            points, normals = points[which], hits["normal"][which]
+            which = np.flatnonzero(hits["object"] >= 0)
+            points = origins[which] + hits["t"][which, None] * directions[which]
+            normals = hits["normal"][which]
             normals *= -np.copysign(1.0, np.einsum("ij,ij->i", normals, directions[which]))[:, None]
             start = points + normals * self.start
             for index, light in enumerate(lights):

@@ -43,8 +43,6 @@ from renderer.shading import (
 )
 from renderer.tables import Floats, Lighting, Pattern
 
-STRAYED = 4.0 * STRAY  # of chords, once a ray has met a facet: what is seen in that has no edge of a pixel's in it
-
 
 @callee
 def meet_far(
@@ -79,7 +77,7 @@ def follow(
     lights = lighting.lights
     rounded = is_round(obj, frame)
     curved = not rounded and is_curved(frame)
-    stray = STRAYED * (pattern.height + pattern.depth)
+    stray = STRAY * (pattern.height + pattern.depth)
     red = green = blue = 0.0
     emerged = False
     x, y, w = start

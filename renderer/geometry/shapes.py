@@ -245,21 +245,61 @@ def block(
             blocked[i] = stands_before(objects, own[i], (at[0], at[1], at[2]), (way[0], way[1], way[2]), far[i])
 
 
+@leaf
+def in_shade(objects: NDArray[np.void], lights: NDArray[np.void], own: int, at: Vector) -> np.uint64:
+    """The bits of the lights that a shape, meshes aside, keeps from a point of the object `own`."""
+    mask = np.uint64(0)
+    for l in range(len(lights)):
+        v, far = lights[l].vector, math.inf
+        way = (v[0], v[1], v[2])
+        if lights[l].kind == POINT:
+            way, far = (v[0] - at[0], v[1] - at[1], v[2] - at[2]), NEXT_TO
+        if stands_before(objects, own, at, way, far):
+            mask |= np.uint64(1) << np.uint64(l)
+    return mask
+
+
 @kernel
 def shade(
     objects: NDArray[np.void], lights: NDArray[np.void], points: Floats, own: Ints, masks: NDArray[np.uint64]
 ) -> None:
-    """Set the bits of the lights that a shape, meshes aside, keeps from points (n, 3) of the objects `own` (n,); -1: of
-    none."""
+    """Set the bits of the lights that a shape, meshes aside, keeps from points (n, 3) of the objects `own` (n,)."""
     for i in range(len(points)):
-        at = (points[i, 0], points[i, 1], points[i, 2])
-        for l in range(len(lights) if own[i] >= 0 else 0):
-            v, far = lights[l].vector, math.inf
-            way = (v[0], v[1], v[2])
-            if lights[l].kind == POINT:
-                way, far = (v[0] - at[0], v[1] - at[1], v[2] - at[2]), NEXT_TO
-            if stands_before(objects, own[i], at, way, far):
-                masks[i] |= np.uint64(1) << np.uint64(l)
+        masks[i] |= in_shade(objects, lights, own[i], (points[i, 0], points[i, 1], points[i, 2]))
+
+
+@kernel
+def shade_hits(
+    objects: NDArray[np.void], lights: NDArray[np.void], origins: Floats, directions: Floats, hits: NDArray[np.void],
+    masks: NDArray[np.uint64],
+) -> None:  # fmt: skip
+    """The same for the hits of rays; misses are in no shade."""
+    for i in range(len(hits)):
+        hit, o, d = hits[i], origins[i], directions[i]
+        if hit.object >= 0:
+            at = (o[0] + hit.t * d[0], o[1] + hit.t * d[1], o[2] + hit.t * d[2])
+            masks[i] |= in_shade(objects, lights, hit.object, at)
+
+
+@kernel
+def arrange(
+    hits: NDArray[np.void], frames: NDArray[np.void], order: NDArray[np.int64], ends: NDArray[np.int64]
+) -> None:
+    """Fill `order` (n,) with the hits by what they met: nothing, then bare and grooved of the first object, and so on;
+    each from ends[k] to ends[k + 1], in their order."""
+    ends[:] = 0
+    for i in range(len(hits)):
+        if hits[i].object >= 0:
+            order[i] = 2 * hits[i].object + 2 - (frames[i].grooved == 0)
+        else:
+            order[i] = 0
+        ends[order[i] + 1] += 1
+    for k in range(1, len(ends)):
+        ends[k] += ends[k - 1]
+    kinds, next_of = order.copy(), ends.copy()
+    for i in range(len(hits)):
+        order[next_of[kinds[i]]] = i
+        next_of[kinds[i]] += 1
 
 
 @leaf
@@ -354,7 +394,7 @@ def frames_at(
     bent: bool, frames: NDArray[np.void],
 ) -> None:  # fmt: skip
     """The tangent frame (n,) FRAME at each hit (n,) of the rays from `origins` (n, 3) along `directions` (n, 3); of a
-    miss, nothing.
+    miss it is left as it was.
 
     Seen from behind, an opaque surface is bare and turned to the viewer. bent: what carries no pattern has a form, too.
     """
