@@ -29,7 +29,7 @@ from renderer.geometry.curve import is_curved
 from renderer.geometry.faces import FACES
 from renderer.geometry.images import COST as STEPS
 from renderer.geometry.images import OFF as UNSEEN
-from renderer.geometry.images import VIEWS, WINDOWS, Images, images_of, look_into_all, open_windows, reflects
+from renderer.geometry.images import VIEWS, WINDOWS, Images, images_of, look_into_all, open_windows
 from renderer.geometry.local import BLOCKS, FULL, Local, local_of
 from renderer.geometry.parts import Parts, hide, light_up, parts_of, show
 from renderer.geometry.polygon import area
@@ -56,6 +56,7 @@ SHARE = 0.1  # of the tolerance, that the colour of one part may use up
 # Chords are for this part of it, no less, where facets may be brighter than white: few are as bright as can be.
 GLOSSY = 0.25
 BENT = 0.5  # the error where chords stand for arcs, in tolerances
+REFLECTED, ALL = 1, 2  # of light that comes by facets, what `shown` says is done: that of mirrors, or there is no other
 REACH = 4.0  # of the grooves' height: so far beyond all else faces are made where mirrors show them
 SLIVER = 1e-3  # parts of a footprint as small as this do not say between which heights straight rays are to be right
 RED, GREEN, BLUE, WHOLE, OFF, CHORDS, COST, LOW, HIGH, TOP, ASIDE, DOWN, ACROSS = range(13)
@@ -94,8 +95,8 @@ def add_up(
         bend = bend_of(pattern, f, found, faces)
         bent = bend > 0.0
         chorded = chorded or bent
-        if images.made[2] == 0 and reflects(material):
-            open_windows(f, bent, n, parts, images)
+        if images.made[2] == 0:
+            open_windows(f, bent, n, material, parts, images)
         cost += seen.heres[eye]
         plain = distant and not bent and is_plain(material) and not is_curved(frame)
         if plain:
@@ -158,7 +159,7 @@ def in_blocks(footprints: NDArray[np.void], chosen: NDArray[np.int64]) -> NDArra
 
 @kernel
 def area_sampling(
-    tolerance: float, rough: float, most: int, flat: bool, bounces: int, last: Lighting, shown: NDArray[np.bool_],
+    tolerance: float, rough: float, most: int, flat: bool, bounces: int, last: Lighting, shown: NDArray[np.uint8],
     pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void],
     camera: Camera, lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats,
     radiance: Floats, method: NDArray[np.uint8],
@@ -167,8 +168,8 @@ def area_sampling(
 
     tolerance: the error to keep within, relative to a white surface in the same light. rough: the error, at most, that
     straight rays over a curved base may make. flat: they share one frame. bounces: how often light that mirrors send on
-    is followed, over a flat base alone; `shown` (n,) says of which footprints that was done. last: the light on what a
-    last bounce meets.
+    is followed, over a flat base alone; `shown` (n,) says of which footprints that was done: REFLECTED, or ALL. last:
+    the light on what a last bounce meets.
     CROWDED where more than `most` strips are near; NOT_MINE where the shares do not sum to one, or too much is left to
     error. slots: rows of `materials` for the pattern's facets, the object's own first.
     """
@@ -200,7 +201,7 @@ def area_sampling(
             continue
         bright = white(lighting, to_world(frame, view.p, view.q, 0.0))
         long = turns(frame, view, lights, turn)
-        images.made[0], images.made[1], images.made[2] = 0, 0, not mirrors
+        images.made[0], images.made[1], images.made[2], images.made[3] = 0, 0, not mirrors, 0
         room = add_up(
             tolerance, bright, long, turn, distant, footprint, pattern, frame, lighting, materials, slots, albedo,
             local, seen, parts, images,
@@ -247,7 +248,7 @@ def area_sampling(
         )  # fmt: skip
         off = images.total[UNSEEN] / bright if bright > 0.0 else 0.0
         if room and error + off <= tolerance:
-            shown[index] = True
+            shown[index] = REFLECTED if images.made[3] == 1 else ALL
             radiance[index, 3] += off
             radiance[index, 4] += images.total[STEPS]
             for k in range(3):

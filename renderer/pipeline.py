@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 import schema
 from renderer import CACHE, body, bounce, film, relief, shading
-from renderer.area import area_sampling, in_blocks
+from renderer.area import REFLECTED, area_sampling, in_blocks
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import MOST, csg
 from renderer.errors import Cancelled, Fault, RenderError
@@ -201,9 +201,8 @@ class Frame:
             shown = self._mirrors(part._replace(lighting=alone), chosen)
             left = chosen[method[chosen] != AREA]
             self._direct(part._replace(lighting=alone), left)
-            if answers(scene.materials, scene.slots[row]) != MIRROR:
-                self._sample(part, chosen[shown], settings.bounces, indirect=True, shown=True)
-            self._sample(part, chosen[~shown], settings.bounces, indirect=True)
+            self._sample(part, chosen[shown == REFLECTED], settings.bounces, indirect=True, shown=True)
+            self._sample(part, chosen[shown == 0], settings.bounces, indirect=True)
 
     def _of(self, part: Part) -> tuple[Any, ...]:
         """What all kernels take after the footprints."""
@@ -298,7 +297,7 @@ class Frame:
             line(MODES.get(settings.method, LOOSE), rough, 0, pattern, footprints, chosen, *rest)
             part.took("line", start)
             left = chosen[method[chosen] == NOT_MINE]
-        none = 0, part.lighting, np.zeros(0, np.bool_)  # of what `_mirrors` does
+        none = 0, part.lighting, np.zeros(0, np.uint8)  # of what `_mirrors` does
         most = FEW_STRIPS if settings.method == "auto" else STRIPS
         if len(left) and settings.method in ("lines", "area", "auto"):
             start = time.perf_counter()
@@ -326,10 +325,11 @@ class Frame:
         if len(left):
             self._sample(part, left)
 
-    def _mirrors(self, part: Part, chosen: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Shade footprints by exact areas, direct light and what mirrors show: of which both are done (n,)."""
+    def _mirrors(self, part: Part, chosen: NDArray[np.int64]) -> NDArray[np.uint8]:
+        """Shade footprints by exact areas, direct light and what mirrors show: what of the latter is done (n,), none,
+        REFLECTED or ALL."""
         scene, settings = self.scene, self.settings
-        shown = np.zeros(len(part.seen.footprints), np.bool_)
+        shown = np.zeros(len(part.seen.footprints), np.uint8)
         flat = int(part.row) in self.flat and part.pattern is not BARE
         follows = (
             settings.method in ("auto", "area") and not self.rays_go_on and not len(scene.lighting.surroundings.tables)

@@ -38,7 +38,7 @@ RED, GREEN, BLUE, OFF, COST = range(5)
 class Images(NamedTuple):
     """The eye's images for one footprint; memory of one thread."""
 
-    made: Counts  # (3,) images, windows, and 1 where there is a mirror that has none
+    made: Counts  # (4,) images, windows; 1 where there is a mirror that has none; 1 where what is seen scatters light
     mirror: Counts  # (VIEWS,) the face that each is behind
     before: Counts  # (VIEWS,) the image that is seen in that; -1: the eye itself
     level: Counts  # (VIEWS,) mirrors on the way
@@ -56,7 +56,7 @@ class Images(NamedTuple):
 @leaf
 def images_of(views: int, windows: int) -> Images:
     return Images(
-        np.zeros(3, np.int64), np.empty(views, np.int64), np.empty(views, np.int64), np.empty(views, np.int64),
+        np.zeros(4, np.int64), np.empty(views, np.int64), np.empty(views, np.int64), np.empty(views, np.int64),
         np.empty((views, 2), np.int64), np.empty((views, 3)), np.empty((views, 3, 3)), np.empty((views, 3, 3)),
         np.empty((windows, CORNERS, 2)), np.empty(windows, np.int64), np.empty(windows), np.empty((CORNERS, 3)),
         np.empty(5),
@@ -68,6 +68,14 @@ def reflects(material: np.void) -> bool:
     """Whether it is an ideal mirror in part."""
     straight, grazing = mirrored(material, 1.0), mirrored(material, 0.0)
     return max(straight[0], straight[1], straight[2], grazing[0], grazing[1], grazing[2]) > 0.0
+
+
+@leaf
+def scatters(material: np.void) -> bool:
+    """Whether it sends light on in more than the mirror's direction."""
+    base = material.base_color
+    matt = (1.0 - material.metallic) * (1.0 - material.transmission) * max(base[0], base[1], base[2]) > 0.0
+    return bool(matt or (material.alpha > 0.0 and (material.metallic > 0.0 or material.f90 > 0.0)))
 
 
 @leaf
@@ -95,10 +103,12 @@ def open_window(f: int, of: int, share: float, polygon: Floats, corners: int, im
 
 
 @leaf
-def open_windows(f: int, bent: bool, n: int, parts: Parts, images: Images) -> None:
-    """Open windows to face f, a mirror, of which the eye sees the n polygons `parts.polygon[0]`. bent: it stands for an
-    arc, and shows what that does not."""
-    for i in range(n):
+def open_windows(f: int, bent: bool, n: int, material: np.void, parts: Parts, images: Images) -> None:
+    """Open windows to face f, if that is a mirror, of which the eye sees the n polygons `parts.polygon[0]`. bent: it
+    stands for an arc, and shows what that does not."""
+    if scatters(material):
+        images.made[3] = 1
+    for i in range(n if reflects(material) else 0):
         polygon, corners = parts.polygon[0, i], parts.corners[0, i]
         share = area(polygon, corners)
         if share > LEAST and (bent or not open_window(f, -1, share, polygon, corners, images)):
@@ -273,6 +283,8 @@ def look_into(
                     through = passed_on(k, u, v, footprint, frame, pattern, materials, slots, local, images)
                     if light < 0:
                         images.rest[i] -= share
+                        if level < bounces and scatters(material):
+                            images.made[3] = 1
                         if shines:
                             bound = share * max(through[0], through[1], through[2])
                             if bound <= DIM * tolerance:
