@@ -41,7 +41,8 @@ from renderer.trace import Truth
 TILE = 64  # pixels
 RAYS = 1 << 14  # from one object to others, at a time
 ROUGH = 0.03  # the error that may be left on meshes' curved bases: next to the terminator light is wrong all over
-FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster
+FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster,
+FEWER_STRIPS = 64  # ... and where mirrors show them
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
 
@@ -338,7 +339,7 @@ class Frame:
         if flat and follows and answers(scene.materials, scene.slots[part.row]) & MIRROR:
             start = time.perf_counter()
             area_sampling(
-                settings.tolerance, self._rough(part.row), FEW_STRIPS, True, settings.bounces, scene.lighting, shown,
+                settings.tolerance, self._rough(part.row), FEWER_STRIPS, True, settings.bounces, scene.lighting, shown,
                 part.pattern, part.seen.footprints, in_blocks(part.seen.footprints, chosen), *self._of(part),
             )  # fmt: skip
             part.took("area", start)

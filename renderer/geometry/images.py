@@ -31,6 +31,7 @@ from renderer.tables import Floats, Lighting, Pattern
 
 VIEWS, WINDOWS = 1024, 4096  # of one footprint
 LEAST = 1e-12  # windows as small as this are nothing
+WORTH = 8000  # faces are looked at through mirrors, at most: rays would be as fast
 DIM = 0.02  # of the tolerance: what a mirror shows is left out where it is less than this of white, and told
 RED, GREEN, BLUE, OFF, COST = range(5)
 
@@ -332,6 +333,8 @@ def look_into_all(
     image.pairs[0] = 0
     k = 0
     while k < images.made[0]:
+        if images.made[0] * local.faces.made[0] > WORTH:
+            return False
         place_image(k, frame, local.faces, seen, images)
         if not look_into(
             k, tolerance, bright, long, turn, bounces, footprint, pattern, frame, lighting, last, materials, slots,
