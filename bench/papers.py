@@ -38,7 +38,7 @@ KB = 1024
 LADDER = (4, 16, 64, 256)  # samples of geometry's curve
 # Where rays go from object to object.
 AUTO = tuple(Setting("auto", 4096, tolerance=tolerance) for tolerance in (0.01, 0.05, 0.02))
-GLASS = (Setting("auto", 128, tolerance=0.01), Setting("csg", 64), *AUTO)
+GLASS = (Setting("csg", 64), *AUTO)
 
 INTRODUCTION = """# The report's figures again
 
