@@ -1,7 +1,9 @@
-"""What grooves cost: a frame of figure 14 by `line` beside one with no grooves, and very many grooves beside many."""
+"""What grooves cost: a frame of figure 14 by `line` beside one with no grooves, very many grooves beside many, and the
+light that facets exchange beside direct light alone."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,8 @@ SIZE = (640, 480)
 RUNS = 15
 COUNTS = (250, 25_000)
 FAR = (64, 48)  # of figure 14: 4 to 20 of the 250 grooves a pixel
+ANGLES = (30, 60, 90, 120)  # of grooves that exchange light, degrees
+BOUNCES = 16
 
 
 def measure() -> tuple[list[Line], dict[str, Any]]:
@@ -34,6 +38,7 @@ def measure() -> tuple[list[Line], dict[str, Any]]:
             if run > 0:
                 spent_far[count].append(picture.seconds["line"])
     few, many = (float(np.median(spent_far[count])) for count in COUNTS)
+    mutual, spent_mutual = exchange()
     line, base = (float(np.median(seconds[method])) for method in ("line", "base"))
     return [
         Line("figure 14, 640x480: base", base, "s"),
@@ -42,7 +47,31 @@ def measure() -> tuple[list[Line], dict[str, Any]]:
         Line("figure 14, 64x48: line, 250 grooves", few, "s"),
         Line("figure 14, 64x48: line, 25,000 grooves", many, "s"),
         at_most("figure 14, 64x48: line, 25,000 / 250 grooves", many / few, 1.5),
-    ], {"resolution": SIZE, "seconds": seconds, "far": spent_far}
+        *mutual,
+    ], {"resolution": SIZE, "seconds": seconds, "far": spent_far, "exchange": spent_mutual}
+
+
+def exchange() -> tuple[list[Line], dict[str, list[float]]]:
+    """Figure 14 with grooves of each angle: the kernel's time with light followed from facet to facet over that
+    without, in turns."""
+    lines = []
+    ratios: dict[str, list[float]] = {}
+    for angle in ANGLES:
+        scene, cache = load("parallel"), PatternCache()
+        told = scene.model_dump(mode="json")
+        told["patterns"]["furrows"]["grooves"][0]["profile"]["depth"] = 0.5 / math.tan(math.radians(angle / 2))
+        followed = {
+            b: schema.Scene.model_validate(told | {"render": told["render"] | {"bounces": b}}) for b in (0, BOUNCES)
+        }
+        found = []
+        for _ in range(RUNS + 1):
+            alone, mutual = (timed(one, "line", SIZE, patterns=cache)[2].seconds["line"] for one in followed)
+            found.append(mutual / alone)
+        ratios[str(angle)] = found = found[1:]
+        error = float(np.std(found, ddof=1)) / math.sqrt(RUNS)
+        what = f"V grooves of {angle} degrees, 640x480: line with {BOUNCES} bounces / with none, +- {error:.3f}"
+        lines.append(at_most(what, float(np.mean(found)), 1.1))
+    return lines, ratios
 
 
 def crowd(count: int) -> schema.Scene:

@@ -15,8 +15,8 @@ tangent plane.
 
 Where nothing stands above the plane, grooves do not mask each other, and each is a cross-section of its own; those
 that overlap share one. Then light that matt facets exchange is in closed form too (`strings`), however often it
-bounces, and so is a first bounce where facets are ideal mirrors in part; a coat, which is not matt where light leaves
-it, is left to samples, as all gloss is.
+bounces, and what they get of a picture of the sky (`opening`). So is a first bounce where facets are ideal mirrors in
+part. A coat, which is not matt where light leaves it, is left to samples, as all gloss is.
 
 A profile that overhangs is no cross-section for this: `auto` leaves its grooves to `area`, and as methods of the
 whole image `line` and `segment` leave them out, so that the plane is seen there.
@@ -65,6 +65,7 @@ from renderer.geometry.strings import (
     gathered,
     light_up,
     nearest_lamp,
+    open_up,
     place,
     recall,
     stretch_of,
@@ -214,12 +215,11 @@ def line(
     answer = answers(materials, slots) if bounces > 0 else 0
     shows, gathers = answer & MIRROR != 0, answer & DIFFUSE != 0
     samples = answer & GLOSSY != 0 or (shows and gathers and (bounces > 1 or not bare))
-    samples = samples or (gathers and has_picture(lighting))
     mutual = BEYOND * pattern.width if gathers else 0.0
     diagonal = math.hypot(pattern.width, pattern.depth)
     ridged = pattern.height > 0.0
-    if has_picture(lighting) and answer & (MIRROR | GLOSSY) != 0:  # of which rays get more than a few directions
-        for index in chosen:
+    if has_picture(lighting) and (answer & (MIRROR | GLOSSY) != 0 or (paper and gathers)):
+        for index in chosen:  # of the picture rays get more than a few directions
             method[index] = NOT_MINE
         return
     stretched, stretch_x, stretch_y, stretch = -1, 0.0, 0.0, 0.0  # a frame and T, and what `stretch_of` says of them
@@ -299,6 +299,8 @@ def line(
                     at = max(near.start, r.low) if side == 0 else min(near.finish, r.high)
                     bend = bent_at(near.turned * pattern.pieces[near.piece].curvature, at - near.axis)
                     curvature, left, right = max(curvature, abs(bend)), min(left, bend), max(right, bend)
+            if gathers and has_picture(lighting) and (curved or curvature > 0.0):
+                continue
             if not folded or entries > 0:  # else their mean is taken, and no path ends up on another side of a rim
                 bowed = 0.5 * curvature * r.length**2 / (r.high - r.low)
             if curved:
@@ -421,6 +423,7 @@ def line(
                     place(like, near.turned, 1.0 if distant else near.scale, pattern, slots, s)
                     light_up(n, work.light, s)
                     lit_b, lit_w, of, lit_parts = s.b, s.w, s.material, s.lit
+                open_up(cavity, stretch, footprint.frame, frame, r, lit_b, lit_w, lighting, s)
                 exchange(
                     cavity, bounces, curved, amid, frame, view, r, lit_b, lit_w, of, lit_parts, lighting, materials, s
                 )  # fmt: skip

@@ -331,8 +331,9 @@ def look_into_all(
     images.total[:] = 0.0
     image.source[:], image.least[:] = seen.source, seen.least
     image.pairs[0] = 0
-    k = 0
-    while k < images.made[0]:
+    for k in range(len(images.mirror)):
+        if k >= images.made[0]:
+            break
         if images.made[0] * local.faces.made[0] > WORTH:
             return False
         place_image(k, frame, local.faces, seen, images)
@@ -341,5 +342,4 @@ def look_into_all(
             albedo, local, image, parts, images,
         ):  # fmt: skip
             return False
-        k += 1
     return True

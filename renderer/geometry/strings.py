@@ -28,12 +28,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from renderer.geometry.curve import turned
+from renderer.geometry.opening import Openings, openings, seen_between, sums_along
 from renderer.geometry.reach import Reach
 from renderer.geometry.section import foot_of, fraction_at, onto_base, spans
 from renderer.geometry.view import View
 from renderer.kernel import callee, fixed, leaf
-from renderer.shading import Vector, dot, light_to_pattern, normal_to_world, to_world, unit
-from renderer.tables import DIRECTIONAL, Floats, Lighting, Pattern
+from renderer.shading import Vector, dot, has_picture, light_to_pattern, looked_up, normal_to_world, to_world, unit
+from renderer.tables import DIRECTIONAL, IRRADIANCE, Floats, Lighting, Pattern
 
 ELEMENTS = fixed(288)  # of one cross-section; more are left to sampling
 ELEMENTS_ABOUT = 32.0  # of one with few facets
@@ -75,6 +76,8 @@ class Strings(NamedTuple):
     own: Floats  # (3, ELEMENTS) radiance without light from the others
     sent: Floats  # (3, ELEMENTS) radiance
     got: Floats  # (3, ELEMENTS) the mean of the radiance that comes in
+    open: Floats  # (3, ELEMENTS) of it, what comes from the sky
+    openings: Openings
 
 
 @leaf
@@ -89,6 +92,7 @@ def strings(lights: int) -> Strings:
         np.empty(ELEMENTS), np.empty(ELEMENTS), np.empty((lights, ELEMENTS, 2)),
         np.empty(ELEMENTS + 1, np.int64), np.empty(ELEMENTS + 1), np.empty((ELEMENTS + 1, ELEMENTS + 1)),
         np.empty((3, ELEMENTS)), np.empty((3, ELEMENTS)), np.empty((3, ELEMENTS)), np.empty((3, ELEMENTS)),
+        np.empty((3, ELEMENTS)), openings(),
     )  # fmt: skip
 
 
@@ -237,13 +241,54 @@ def light_up(n: int, light: Floats, s: Strings) -> None:
 
 
 @callee
+def open_up(
+    at: int, stretch: float, index: int, frame: np.void, r: Reach, b: Floats, w: Floats, lighting: Lighting, s: Strings
+) -> None:
+    """Fill `s.open` for the cross-section (b, w). Of a picture elements see what their middles do, as much as they see
+    of an even sky. index: of the frame, one for all that is flat and straight."""
+    sky, picture = lighting.sky, has_picture(lighting)
+    first, node = s.first[at], s.node[at]
+    facets = s.facets[at]
+    sums = s.openings.sums[0]
+    if picture:
+        sums = s.openings.sums[sums_along(index, frame, r, lighting.surroundings, s.openings)]
+    wide = math.exp(stretch / STRETCHES)
+    for i in range(facets):
+        run, rise = wide * (b[i + 1] - b[i]), w[i + 1] - w[i]
+        length = math.hypot(run, rise)
+        for e in range(first[i], first[i + 1]):
+            for c in range(3):
+                s.open[c, e] = s.sky[at, e] * sky[c]
+            if not picture or length == 0.0:
+                continue
+            v = 0.5 * (node[e + i] + node[e + i + 1])
+            x, y = wide * b[i] + v * run, w[i] + v * rise
+            low, high = 0.0, math.pi
+            for k in range(facets + 1):
+                theta = math.atan2(w[k] - y, wide * b[k] - x)
+                if k <= i:
+                    high = min(high, theta if theta > -0.5 * math.pi else theta + 2.0 * math.pi)
+                else:
+                    low = max(low, theta)
+            if high <= low:
+                continue
+            cosine, sine = -rise / length, run / length
+            share = cosine * (math.sin(high) - math.sin(low)) - sine * (math.cos(high) - math.cos(low))
+            if share <= 0.0:
+                continue
+            for c in range(3):
+                s.open[c, e] += 2.0 * s.sky[at, e] / share * seen_between(low, high, cosine, sine, c, sums)
+
+
+@callee
 def exchange(
     at: int, bounces: int, curved: bool, folded_at: float, frame: np.void, view: View, r: Reach, b: Floats, w: Floats,
     row: NDArray[np.int64], lit: Floats, lighting: Lighting, materials: NDArray[np.void], s: Strings,
 ) -> None:  # fmt: skip
     """Find what facets gather from each other and from the sky in the last of `bounces`, rows `at` of total and rate.
 
-    (b, w): the cross-section in place; row: of its facets' materials; lit: (lights, facets, 2) their lit parts.
+    (b, w): the cross-section in place; row: of its facets' materials; lit: (lights, facets, 2) their lit parts. What
+    they get from the sky is in `s.open`.
     """
     lights, sky = lighting.lights, lighting.sky
     first, node = s.first[at], s.node[at]
@@ -260,6 +305,10 @@ def exchange(
         base, glow = material.base_color, material.emissive
         diffuse = (1.0 - material.metallic) * (1.0 - material.transmission)
         normal = normal_to_world(frame, (-rise * bx, -rise * by, run))
+        around = (sky[0], sky[1], sky[2])
+        if has_picture(lighting):
+            more = looked_up(lighting.surroundings, IRRADIANCE, normal)
+            around = (sky[0] + more[0], sky[1] + more[1], sky[2] + more[2])
         for e in range(first[i], first[i + 1]):
             u0, u1 = node[e + i], node[e + i + 1]
             red = green = blue = 0.0
@@ -286,12 +335,12 @@ def exchange(
             for c, comes in ((0, red), (1, green), (2, blue)):
                 s.albedo[c, e] = diffuse * base[c]
                 s.own[c, e] = glow[c] + s.albedo[c, e] * comes
-                s.sent[c, e] = s.own[c, e] + s.albedo[c, e] * sky[c]
+                s.sent[c, e] = s.own[c, e] + s.albedo[c, e] * around[c]
     for _ in range(bounces):
         for c in range(3):
             got, sent = s.got[c], s.sent[c]
             for i in range(n):
-                got[i] = s.sky[at, i] * sky[c]
+                got[i] = s.open[c, i]
             for j in range(n):
                 radiance, of = sent[j], s.factor[at, j]
                 for i in range(n):

@@ -16,6 +16,7 @@ from renderer.geometry import strings
 from renderer.tables import BASE, LINE
 
 from .parts import alone
+from .test_envmap import files
 
 Json = dict[str, Any]
 Floats = NDArray[np.float64]
@@ -242,6 +243,37 @@ def test_stretched_in_the_world(plate: Callable[..., Json], picture: Callable[..
     as_near_as_noise(one, other, ours.radiance.astype(float), 0.0015)
 
 
+def window() -> Callable[[str], bytes]:
+    """A dim blue sky with a bright window of 30 by 20 degrees, low in the south-east, and a red west."""
+    made = np.tile(np.array([0.1, 0.15, 0.3], np.float32), (90, 180, 1))
+    made[30:40, 60:75] = [9, 8, 6]
+    made[20:60, 120:150, 0] += 0.6
+    return files(made)
+
+
+OBLIQUE: Json = {"path": {"type": "polyline", "points": [[-1.0, -9], [2.0, 9]]}}
+UNDER: dict[str, tuple[Json, int, Json, Json]] = {
+    "v": (VEE, 1, {}, {}),
+    "box, turned": (BOX, 4, {"groove": OBLIQUE}, {"rotate": 70, "scale": 1.5}),
+    "hump, a sun and a sky": (HUMP, 2, {}, {"rotate": 200}),
+    "ditch, stretched": (DITCH, 3, {"groove": OBLIQUE, "mapping": {"scale": [4.0, 2.0]}, "step": 0.25}, {}),
+}
+
+
+@pytest.mark.parametrize("case", UNDER)
+def test_truth_under_a_picture(plate: Callable[..., Json], picture: Callable[..., Any], case: str) -> None:
+    """A picture of the sky lights facets through the groove's opening."""
+    profile, bounces, more, placed = UNDER[case]
+    lights: list[Json] = [{"type": "envmap", "file": "sky.exr"} | placed, *([SUN, SKY] if "sun" in case else [])]
+    data = plain(plate, profile, lights, bounces, **more)
+    one, other = (
+        picture(data, method="geometry", samples=1600, seed=s, meshes=window()).radiance.astype(float) for s in (1, 2)
+    )
+    ours = picture(data, method="auto", meshes=window())
+    assert set(np.unique(ours.aovs["method"])) <= {LINE, BASE}
+    as_near_as_noise(one, other, ours.radiance.astype(float), 0.0015)
+
+
 def test_many_in_a_pixel(plate: Callable[..., Json], picture: Callable[..., Any]) -> None:
     """Repeats that are folded, and rings."""
     rows = {"repeat": {"type": "linear", "count": 400, "step": [0.009, 0]}}
@@ -258,9 +290,11 @@ def test_many_in_a_pixel(plate: Callable[..., Json], picture: Callable[..., Any]
 
 
 def test_what_is_left_to_samples(plate: Callable[..., Json], picture: Callable[..., Any]) -> None:
-    """Ridges, gloss, coats, mirrors that are matt in part seen twice, ends near by, a lamp close by."""
+    """Ridges, gloss, coats, mirrors that are matt in part seen twice, ends near by, a lamp close by; rings, as T turns,
+    under a picture of the sky."""
     ridge = {"type": "v", "width": 0.16, "depth": -0.1}
     ended = {"path": {"type": "polyline", "points": [[1.0, 0.9], [1.0, 1.2]]}, "repeat": None}
+    ring = {"path": {"type": "circle", "center": [1, 2], "radius": 1.0}, "repeat": None}
     near = LAMP | {"position": [0.0, 0.0, 0.3]}
     others = [
         plain(plate, ridge, [SUN], 1),
@@ -269,11 +303,12 @@ def test_what_is_left_to_samples(plate: Callable[..., Json], picture: Callable[.
         plain(plate, VEE, [SUN], 2, MATT | {"metallic": 0.5, "roughness": 0}),
         plain(plate, VEE, [near], 1),
         plain(plate, VEE, [SUN], 1, groove=ended),
+        plain(plate, VEE, [{"type": "envmap", "file": "sky.exr"}], 1, groove=ring),
     ]
     for data in others:
         data["camera"]["resolution"] = [8, 6]
         data["camera"]["fov"] = 3
-        assert LINE not in picture(data, method="auto", samples=4).aovs["method"]
+        assert LINE not in picture(data, method="auto", samples=4, meshes=window()).aovs["method"]
 
 
 def test_any_tiles_any_threads(plate: Callable[..., Json], picture: Callable[..., Any]) -> None:
