@@ -51,26 +51,25 @@ def measure() -> tuple[list[Line], dict[str, Any]]:
     ], {"resolution": SIZE, "seconds": seconds, "far": spent_far, "exchange": spent_mutual}
 
 
-def exchange() -> tuple[list[Line], dict[str, list[float]]]:
-    """Figure 14 with grooves of each angle: the kernel's time with light followed from facet to facet over that
-    without, in turns."""
+def exchange() -> tuple[list[Line], dict[str, list[list[float]]]]:
+    """Figure 14 with grooves of each angle, light followed from facet to facet over not followed, in turns: the time of
+    frames, and of the kernel alone."""
     lines = []
-    ratios: dict[str, list[float]] = {}
+    ratios: dict[str, list[list[float]]] = {}
     for angle in ANGLES:
         scene, cache = load("parallel"), PatternCache()
         told = scene.model_dump(mode="json")
         told["patterns"]["furrows"]["grooves"][0]["profile"]["depth"] = 0.5 / math.tan(math.radians(angle / 2))
-        followed = {
-            b: schema.Scene.model_validate(told | {"render": told["render"] | {"bounces": b}}) for b in (0, BOUNCES)
-        }
+        frames = [schema.Scene.model_validate(told | {"render": {"bounces": count}}) for count in (0, BOUNCES)]
         found = []
         for _ in range(RUNS + 1):
-            alone, mutual = (timed(one, "line", SIZE, patterns=cache)[2].seconds["line"] for one in followed)
-            found.append(mutual / alone)
+            alone, mutual = (timed(frame, "line", SIZE, patterns=cache) for frame in frames)
+            found.append([mutual[1] / alone[1], mutual[2].seconds["line"] / alone[2].seconds["line"]])
         ratios[str(angle)] = found = found[1:]
-        error = float(np.std(found, ddof=1)) / math.sqrt(RUNS)
-        what = f"V grooves of {angle} degrees, 640x480: line with {BOUNCES} bounces / with none, +- {error:.3f}"
-        lines.append(at_most(what, float(np.mean(found)), 1.1))
+        (frame, kernel), errors = np.mean(found, axis=0), np.std(found, axis=0, ddof=1) / math.sqrt(RUNS)
+        what = f"V grooves of {angle} degrees, 640x480: line with {BOUNCES} bounces / with none"
+        lines.append(at_most(f"{what}, +- {errors[0]:.3f}", float(frame), 1.1))
+        lines.append(Line(f"{what}, its kernel alone, +- {errors[1]:.3f}", float(kernel)))
     return lines, ratios
 
 

@@ -97,8 +97,6 @@ STRICT = 0  # `auto`: mark it as not its own
 LOOSE = 1  # `line` for the whole image: the grooves parallel to the nearest one, nothing else
 PAPER = 2  # `segment` for the whole image
 
-CELLS = 3.0
-"""Parts of a footprint in which light from facet to facet has one colour on each."""
 NARROW = 1e-4  # of a facet
 BESIDE = 0.35  # of the brightest: facets that are not seen or not lit here may be so next to it
 FINE = 0.25  # of the error that may be left: slices of a footprint are so many that paths bow by no more in each
@@ -502,35 +500,21 @@ def line(
                         faint += colour[0] + colour[1] + colour[2]
                 faintest, strongest = min(faintest, faint), max(strongest, strong)
                 if gathers:
-                    cells, here, there = 1, low, high
-                    if not folded:
-                        here, there = max(low, min(r.low, -half)), min(high, max(r.high, half))
-                        cells = int(min(CELLS * (there - here) / (r.high - r.low), CELLS - 1.0)) + 1
+                    here, there, inner, outer = low, high, math.inf, math.inf
+                    if not (folded or paper):
+                        here, there, inner, outer = max(low, r.low), min(high, r.high), spread.inner, spread.outer
+                    elif paper:
+                        here, there = max(low, -half), min(high, half)
                     u0, u1 = 0.0, 1.0
                     if here > work.x[i]:
                         u0 = min(max(fraction_at(here, b0, w0, b1, w1, eye_d, eye_w, eye_h), 0.0), 1.0)
                     if there < work.x[i + 1]:
                         u1 = min(max(fraction_at(there, b0, w0, b1, w1, eye_d, eye_w, eye_h), 0.0), 1.0)
                     if u1 - u0 < NARROW:  # a difference of sums has too few digits left
-                        cells, u0 = 1, min(max(0.5 * (u0 + u1 - NARROW), 0.0), 1.0 - NARROW)
+                        inner, u0 = math.inf, min(max(0.5 * (u0 + u1 - NARROW), 0.0), 1.0 - NARROW)
                         u1 = u0 + NARROW
-                    rest, y0, x0 = part, gathered(cavity, i, u0, work.strings), here
-                    for cell in range(cells):
-                        x1, u2, lit = there, u1, rest
-                        if cell + 1 < cells:
-                            x1 = x0 + (there - here) / cells
-                            u2 = fraction_at(x1, b0, w0, b1, w1, eye_d, eye_w, eye_h)
-                            lit = copies * weigh(
-                                folded, entries, cuts, paper, view, bx, by, centre, half, x0, x1, work
-                            )  # fmt: skip
-                        y1 = gathered(cavity, i, u2, work.strings)
-                        if u2 > u0:
-                            mean = lit / (u2 - u0)
-                            red, green, blue = (
-                                red + mean * (y1[0] - y0[0]), green + mean * (y1[1] - y0[1]),
-                                blue + mean * (y1[2] - y0[2]),
-                            )  # fmt: skip
-                        rest, y0, x0, u0 = rest - lit, y1, x1, u2
+                    given = gathered(cavity, i, u0, u1, here, there, inner, outer, work.strings)
+                    red, green, blue = red + part * given[0], green + part * given[1], blue + part * given[2]
                 if not shows:
                     continue
                 clear_of = mirrored(materials[work.section.material[i]], 0.0)

@@ -8,7 +8,8 @@ taut over what stands between. Taut over a polyline that does not overhang is it
 lengths between all pairs of points has all factors in it, and rows sum to one with the sky whatever rounding does.
 
 Facets are cut into ELEMENTS_ABOUT elements, by their lengths and finer at their ends, each of one radiance. Of what a
-facet gathers, means over the elements are known, and a smooth curve through their sums gives the mean over any part.
+facet gathers, means over the elements are known, and a smooth curve through their sums, from which even steps are read:
+within each it changes evenly. So the mean over any part is known, however a footprint weighs it.
 Against 192 elements facets are off by at most 0.0004 of white in a V of 90 degrees and a box, of albedo 0.9 at 16
 bounces under a sun and a sky (measured); up to 0.007 in a ditch twice as deep as wide.
 
@@ -39,9 +40,11 @@ from renderer.tables import DIRECTIONAL, IRRADIANCE, Floats, Lighting, Pattern
 ELEMENTS = fixed(288)  # of one cross-section; more are left to sampling
 ELEMENTS_ABOUT = 32.0  # of one with few facets
 NODES = fixed(2 * 288)  # their ends, for each facet its own
+STEPS, STEPS_ABOUT = fixed(2 * 288), 64  # even steps of one cross-section; of a facet, where there is room for so many
 KEPT = fixed(16)  # cross-sections of which a thread keeps factors
 STRETCHES = 512.0  # steps of the stretch by which they are kept, for a factor of e
 
+CORNER = 1e-3  # of what a footprint weighs most: its corners are not told from their middle
 BEYOND = 6.0  # half-widths along T over which a groove must go on: 1 % of what it exchanges comes from farther away
 BENT = 0.03  # ... and its half-width, in radii of its path
 NEAR_LAMP = 12.0  # half-widths from which on a lamp is far
@@ -52,15 +55,16 @@ class Strings(NamedTuple):
     """Memory of one thread."""
 
     known: Floats  # (KEPT, 2) the groove and its sense whose factors these are, and the stretch in steps; -1: none
-    solved: Floats  # (KEPT, 3) frame or footprint, and T, for which `total` holds; -1: none
+    solved: Floats  # (KEPT, 3) frame or footprint, and T, for which `step` holds; -1: none
     blocked: NDArray[np.uint64]  # (KEPT,) ... and the lights that are blocked
     facets: NDArray[np.int64]  # (KEPT,)
     first: NDArray[np.int64]  # (KEPT, ELEMENTS + 1) the first element of each facet
     node: Floats  # (KEPT, NODES) where elements begin and end on their facets, 0 to 1; the first is first + facet
     factor: Floats  # (KEPT, ELEMENTS, ELEMENTS) [j, i]: the part of what i gets that is of j
     sky: Floats  # (KEPT, ELEMENTS) the part that is of the sky
-    total: Floats  # (KEPT, 3, NODES) radiance by light from the others and from the sky, summed over the facet so far
-    rate: Floats  # (KEPT, 3, NODES) the same here
+    steps: NDArray[np.int64]  # (KEPT,) of each facet
+    step: Floats  # (KEPT, STEPS, 3, 4) in each channel, radiance by light from the others and from the sky: summed over
+    # the facet so far, and that again; its mean in this step times the step's length, and by how much it grows there
     b: Floats  # (ELEMENTS + 1,) a groove's cross-section
     w: Floats
     material: NDArray[np.int64]  # (ELEMENTS,) row of the materials, a facet each
@@ -76,6 +80,8 @@ class Strings(NamedTuple):
     own: Floats  # (3, ELEMENTS) radiance without light from the others
     sent: Floats  # (3, ELEMENTS) radiance
     got: Floats  # (3, ELEMENTS) the mean of the radiance that comes in
+    total: Floats  # (NODES,) what is gathered, summed over the facet so far
+    rate: Floats  # (NODES,) the same here
     open: Floats  # (3, ELEMENTS) of it, what comes from the sky
     openings: Openings
 
@@ -86,13 +92,13 @@ def strings(lights: int) -> Strings:
         np.full((KEPT, 2), -1.0), np.full((KEPT, 3), -1.0), np.zeros(KEPT, np.uint64),
         np.zeros(KEPT, np.int64),
         np.empty((KEPT, ELEMENTS + 1), np.int64), np.empty((KEPT, NODES)), np.empty((KEPT, ELEMENTS, ELEMENTS)),
-        np.empty((KEPT, ELEMENTS)), np.empty((KEPT, 3, NODES)), np.empty((KEPT, 3, NODES)),
+        np.empty((KEPT, ELEMENTS)), np.zeros(KEPT, np.int64), np.empty((KEPT, STEPS, 3, 4)),
         np.empty(ELEMENTS + 1), np.empty(ELEMENTS + 1), np.empty(ELEMENTS, np.int64), np.empty(ELEMENTS + 1),
         np.empty(ELEMENTS + 1),
         np.empty(ELEMENTS), np.empty(ELEMENTS), np.empty((lights, ELEMENTS, 2)),
         np.empty(ELEMENTS + 1, np.int64), np.empty(ELEMENTS + 1), np.empty((ELEMENTS + 1, ELEMENTS + 1)),
         np.empty((3, ELEMENTS)), np.empty((3, ELEMENTS)), np.empty((3, ELEMENTS)), np.empty((3, ELEMENTS)),
-        np.empty((3, ELEMENTS)), openings(),
+        np.empty(NODES), np.empty(NODES), np.empty((3, ELEMENTS)), openings(),
     )  # fmt: skip
 
 
@@ -285,7 +291,7 @@ def exchange(
     at: int, bounces: int, curved: bool, folded_at: float, frame: np.void, view: View, r: Reach, b: Floats, w: Floats,
     row: NDArray[np.int64], lit: Floats, lighting: Lighting, materials: NDArray[np.void], s: Strings,
 ) -> None:  # fmt: skip
-    """Find what facets gather from each other and from the sky in the last of `bounces`, rows `at` of total and rate.
+    """Find what facets gather from each other and from the sky in the last of `bounces`, row `at` of `s.step`.
 
     (b, w): the cross-section in place; row: of its facets' materials; lit: (lights, facets, 2) their lit parts. What
     they get from the sky is in `s.open`.
@@ -354,16 +360,27 @@ def exchange(
                 s.sent[c, i] = now
         if change <= 1e-7 * most:
             break
+    steps = min(STEPS_ABOUT, STEPS // facets)
+    s.steps[at] = steps
+    total, rate = s.total, s.rate
     for i in range(facets):
-        begin, end = first[i], first[i + 1]
+        begin, end = first[i] + i, first[i + 1] + i
         for c in range(3):
-            total, rate = s.total[at, c], s.rate[at, c]
-            total[begin + i] = 0.0
+            total[begin] = 0.0
             for e in range(begin, end):
-                mean = s.albedo[c, e] * s.got[c, e]
-                total[e + i + 1] = total[e + i] + mean * (node[e + i + 1] - node[e + i])
+                total[e + 1] = total[e] + s.albedo[c, e - i] * s.got[c, e - i] * (node[e + 1] - node[e])
             for e in range(begin, end + 1):
-                rate[e + i] = _rate(e + i, begin + i, end + i, node, total)
+                rate[e] = _rate(e, begin, end, node, total)
+            e, summed, again, here = begin, 0.0, 0.0, rate[begin]
+            for k in range(steps):
+                u = (k + 1.0) / steps
+                while e < end - 1 and node[e + 1] < u:
+                    e += 1
+                there, after = _curve(u, e, node, total, rate)
+                step = s.step[at, i * steps + k, c]
+                step[0], step[1], step[2], step[3] = summed, again, there - summed, (after - here) / steps
+                again += (summed + 0.5 * step[2] - step[3] / 12.0) / steps
+                summed, here = there, after
 
 
 @leaf
@@ -388,22 +405,76 @@ def _rate(i: int, first: int, last: int, x: Floats, y: Floats) -> float:
 
 
 @leaf
-def gathered(at: int, i: int, u: float, s: Strings) -> Vector:
-    """What is gathered from the start of facet i to u, RGB: a mean radiance times u."""
-    begin, end = s.first[at, i] + i, s.first[at, i + 1] + i
-    if u <= 0.0:
-        return 0.0, 0.0, 0.0
-    if u >= 1.0:
-        return s.total[at, 0, end], s.total[at, 1, end], s.total[at, 2, end]
-    j = begin
-    while j < end - 1 and s.node[at, j + 1] < u:
-        j += 1
-    h = s.node[at, j + 1] - s.node[at, j]
-    v = min(max((u - s.node[at, j]) / h, 0.0), 1.0)
-    there, here = v * v * (3.0 - 2.0 * v), h * v * (1.0 - v)
-    t0, t1, t2, r0, r1, r2 = s.total[at, 0], s.total[at, 1], s.total[at, 2], s.rate[at, 0], s.rate[at, 1], s.rate[at, 2]
+def _curve(u: float, i: int, x: Floats, y: Floats, rate: Floats) -> tuple[float, float]:
+    """The cubic between nodes i and i + 1 at u, and its derivative."""
+    h = x[i + 1] - x[i]
+    v, grown = min(max((u - x[i]) / h, 0.0), 1.0), y[i + 1] - y[i]
+    r0, r1 = h * rate[i], h * rate[i + 1]
+    value = y[i] + v * v * (3.0 - 2.0 * v) * grown + v * (1.0 - v) * ((1.0 - v) * r0 - v * r1)
+    return value, (6.0 * v * (1.0 - v) * grown + (1.0 - v) * (1.0 - 3.0 * v) * r0 + v * (3.0 * v - 2.0) * r1) / h
+
+
+@leaf
+def _summed(at: int, i: int, u: float, s: Strings) -> tuple[Vector, Vector]:
+    """What is gathered from the start of facet i to u, RGB: a mean radiance times u; and the integral of that."""
+    steps = s.steps[at]
+    k = min(int(u * steps), steps - 1)
+    v, h, row = u * steps - k, 1.0 / steps, s.step[at, i * steps + k]
+    square = 0.5 * v * v
+    w, x = square - 0.5 * v, square * (v / 3.0 - 0.5)
     return (
-        t0[j] + there * (t0[j + 1] - t0[j]) + here * ((1.0 - v) * r0[j] - v * r0[j + 1]),
-        t1[j] + there * (t1[j + 1] - t1[j]) + here * ((1.0 - v) * r1[j] - v * r1[j + 1]),
-        t2[j] + there * (t2[j + 1] - t2[j]) + here * ((1.0 - v) * r2[j] - v * r2[j + 1]),
+        (
+            row[0, 0] + v * row[0, 2] + w * row[0, 3],
+            row[1, 0] + v * row[1, 2] + w * row[1, 3],
+            row[2, 0] + v * row[2, 2] + w * row[2, 3],
+        ),
+        (
+            row[0, 1] + h * (v * row[0, 0] + square * row[0, 2] + x * row[0, 3]),
+            row[1, 1] + h * (v * row[1, 0] + square * row[1, 2] + x * row[1, 3]),
+            row[2, 1] + h * (v * row[2, 0] + square * row[2, 2] + x * row[2, 3]),
+        ),
     )
+
+
+@leaf
+def gathered(
+    at: int, i: int, u0: float, u1: float, low: float, high: float, inner: float, outer: float, s: Strings
+) -> Vector:  # fmt: skip
+    """The mean of what facet i gathers from u0 to u1, RGB, seen from `low` to `high` along B.
+
+    A parallelogram weighs places along B by a trapezoid: evenly up to `inner` on both sides of its centre, and from
+    there ever less, down to nothing at `outer`. In parts, the integral of that times a radiance is one of the
+    trapezoid's two slopes times the radiance's sum.
+    """
+    y0, z0 = _summed(at, i, u0, s)
+    y1, z1 = _summed(at, i, u1, s)
+    red, green, blue, whole = y1[0] - y0[0], y1[1] - y0[1], y1[2] - y0[2], u1 - u0
+    if low < -inner or high > inner:
+        fall, rate = 1.0 / (outer - inner), (u1 - u0) / (high - low)
+        g0, g1 = max(min((outer - abs(low)) * fall, 1.0), 0.0), max(min((outer - abs(high)) * fall, 1.0), 0.0)
+        red, green, blue = g1 * y1[0] - g0 * y0[0], g1 * y1[1] - g0 * y0[1], g1 * y1[2] - g0 * y0[2]
+        total, least = g1 * u1 - g0 * u0, CORNER * whole
+        if low < -inner:
+            v, z, rise = u1, z1, g1 - g0
+            if high > -inner:
+                v, rise = min(u0 + (-inner - low) * rate, u1), 1.0 - g0
+                _, z = _summed(at, i, v, s)
+            if v > u0:
+                part = rise / (v - u0)
+                red, green = red - part * (z[0] - z0[0]), green - part * (z[1] - z0[1])
+                blue, total = blue - part * (z[2] - z0[2]), total - 0.5 * rise * (u0 + v)
+        if high > inner:
+            v, z, rise = u0, z0, g1 - g0
+            if low < inner:
+                v, rise = max(u1 - (high - inner) * rate, u0), g1 - 1.0
+                _, z = _summed(at, i, v, s)
+            if v < u1:
+                part = rise / (u1 - v)
+                red, green = red - part * (z1[0] - z[0]), green - part * (z1[1] - z[1])
+                blue, total = blue - part * (z1[2] - z[2]), total - 0.5 * rise * (v + u1)
+        if total > least:
+            whole = total
+        else:
+            red, green, blue = y1[0] - y0[0], y1[1] - y0[1], y1[2] - y0[2]
+    part = 1.0 / whole
+    return max(part * red, 0.0), max(part * green, 0.0), max(part * blue, 0.0)

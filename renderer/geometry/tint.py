@@ -37,13 +37,15 @@ class Spread(NamedTuple):
     across: float
     slant: float  # how far along T its middle goes for a unit across
     along: float  # on either side of that
+    inner: float  # so far from its centre on either side across it is all there,
+    outer: float  # ... and from here on nothing of it is
 
 
 @leaf
 def spread_of(paper: bool, view: View, r: Reach) -> Spread:
     """The papers' segment lies across, and is looked at in its middle."""
     if paper:
-        return Spread(0.0, 0.0, 0.0)
+        return Spread(0.0, 0.0, 0.0, math.inf, math.inf)
     p0, q0 = on_plane(view, 1.0, 0.5)
     p1, q1 = on_plane(view, 0.5, 1.0)
     p0, q0, p1, q1 = p0 - view.p, q0 - view.q, p1 - view.p, q1 - view.q
@@ -52,7 +54,8 @@ def spread_of(paper: bool, view: View, r: Reach) -> Spread:
     square = b0 * b0 + b1 * b1
     slant = (b0 * t0 + b1 * t1) / square if square > 0.0 else 0.0
     rest = t0 * t0 + t1 * t1 - slant * slant * square
-    return Spread(math.sqrt(square / 3.0), slant, math.sqrt(max(rest, 0.0) / 3.0))
+    wide, narrow = abs(b0), abs(b1)
+    return Spread(math.sqrt(square / 3.0), slant, math.sqrt(max(rest, 0.0) / 3.0), abs(wide - narrow), wide + narrow)
 
 
 @leaf
