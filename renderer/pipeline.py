@@ -332,9 +332,7 @@ class Frame:
         scene, settings = self.scene, self.settings
         shown = np.zeros(len(part.seen.footprints), np.uint8)
         flat = int(part.row) in self.flat and part.pattern is not BARE
-        follows = (
-            settings.method in ("auto", "area") and not self.rays_go_on and not len(scene.lighting.surroundings.tables)
-        )
+        follows = settings.method in ("auto", "area") and not self.rays_go_on
         part.method[chosen] = NOT_MINE
         if flat and follows and answers(scene.materials, scene.slots[part.row]) & MIRROR:
             start = time.perf_counter()

@@ -5,6 +5,9 @@ A ray through the screen's point (x, y) goes on from the image of the eye in the
 new eye; what of a face lies behind the mirror's plane is cut off by one more half-plane; and what is seen of the mirror
 is the window that all is seen through. What is seen there of another mirror is a window again.
 
+The sky is seen where nothing is: of a picture what is smooth, as a pixel's rays spread little; next to its edges samples
+know more.
+
 The papers follow profiles along one direction and leave crossings out (000, 8); here nothing is left out but what is
 too small to matter, and what the faces at hand do not reach.
 """
@@ -26,13 +29,24 @@ from renderer.geometry.parts import Parts, hide, light_up, show
 from renderer.geometry.polygon import CORNERS, MOST, Counts, area, clipped, edges, enclose
 from renderer.geometry.sight import Seen, before, bend_of, draw_near, look_along, may_light, place_on, slot_of
 from renderer.kernel import leaf
-from renderer.shading import Vector, direction_to_pattern, dot, mirrored, normal_to_world, unit
+from renderer.shading import (
+    Vector,
+    direction_to_pattern,
+    dot,
+    has_picture,
+    mirrored,
+    normal_to_world,
+    sky_from,
+    unit,
+)
 from renderer.tables import Floats, Lighting, Pattern
 
 VIEWS, WINDOWS = 1024, 4096  # of one footprint
 LEAST = 1e-12  # windows as small as this are nothing
+WHOLE = 0.999  # of a window: what shows all of the sky
 WORTH = 8000  # faces are looked at through mirrors, at most: rays would be as fast
-DIM = 0.02  # of the tolerance: what a mirror shows is left out where it is less than this of white, and told
+DIM = 0.02  # of the tolerance: what a mirror shows is left out where it is less than this of white, and told;
+VIVID = 64.0  # ... of a picture of the sky, where nothing is brighter than so many times white, so much less
 RED, GREEN, BLUE, OFF, COST = range(5)
 
 
@@ -143,27 +157,34 @@ def place_image(k: int, frame: np.void, faces: Faces, seen: Seen, images: Images
 
 
 @leaf
+def way_at(
+    k: int, u: float, v: float, footprint: np.void, frame: np.void, images: Images
+) -> Vector:  # fmt: skip
+    """Where the ray through the point (u, v) of the square goes on from the mirror of image k, in the world."""
+    x, y = footprint.x + footprint.size * u, footprint.y + footprint.size * v
+    a, ray = frame.axes, images.ray[k]
+    d0 = ray[0, 0] * x + ray[0, 1] * y + ray[0, 2]
+    d1 = ray[1, 0] * x + ray[1, 1] * y + ray[1, 2]
+    d2 = ray[2, 0] * x + ray[2, 1] * y + ray[2, 2]
+    return unit(
+        (
+            a[0, 0] * d0 + a[0, 1] * d1 + a[0, 2] * d2,
+            a[1, 0] * d0 + a[1, 1] * d1 + a[1, 2] * d2,
+            a[2, 0] * d0 + a[2, 1] * d1 + a[2, 2] * d2,
+        )
+    )
+
+
+@leaf
 def passed_on(
     k: int, u: float, v: float, footprint: np.void, frame: np.void, pattern: Pattern, materials: NDArray[np.void],
     slots: NDArray[np.int32], local: Local, images: Images,
 ) -> Vector:  # fmt: skip
     """The part of radiance, RGB, that the mirrors up to image k pass on through the point (u, v) of the square."""
-    x, y = footprint.x + footprint.size * u, footprint.y + footprint.size * v
     red = green = blue = 1.0
-    a = frame.axes
     while k >= 0:
-        f, ray = images.mirror[k], images.ray[k]
-        plane = local.faces.plane[f]
-        d0 = ray[0, 0] * x + ray[0, 1] * y + ray[0, 2]
-        d1 = ray[1, 0] * x + ray[1, 1] * y + ray[1, 2]
-        d2 = ray[2, 0] * x + ray[2, 1] * y + ray[2, 2]
-        way = unit(
-            (
-                a[0, 0] * d0 + a[0, 1] * d1 + a[0, 2] * d2,
-                a[1, 0] * d0 + a[1, 1] * d1 + a[1, 2] * d2,
-                a[2, 0] * d0 + a[2, 1] * d1 + a[2, 2] * d2,
-            )
-        )
+        f = images.mirror[k]
+        plane, way = local.faces.plane[f], way_at(k, u, v, footprint, frame, images)
         n = normal_to_world(frame, (plane[0], plane[1], plane[2]))
         part = mirrored(materials[slots[slot_of(pattern, f, local.found, local.faces)]], dot(n, way))
         red, green, blue = red * part[0], green * part[1], blue * part[2]
@@ -213,6 +234,39 @@ def gets_away(i: int, footprint: np.void, high: float, local: Local, seen: Seen,
 
 
 @leaf
+def sky_through(
+    k: int, i: int, u: float, v: float, partial: bool, footprint: np.void, frame: np.void, lighting: Lighting,
+    images: Images,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """The mean of the sky that image k sees through its window i about (u, v), RGB, and what that may be off by.
+
+    Of a picture: in triangles from there to the window's sides, as far as nothing stands before it. Where its corners
+    say otherwise than its middle, an edge of the picture may run through it. partial: something does stand there.
+    """
+    sky = lighting.sky
+    if not has_picture(lighting):
+        return sky[0], sky[1], sky[2], 0.0
+    window, corners = images.window[i], images.corners[i]
+    middle = sky_from(lighting, way_at(k, u, v, footprint, frame, images))
+    red = green = blue = whole = 0.0
+    r = g = b = apart = 0.0
+    for j in range(corners):
+        p0, p1 = window[j], window[(j + 1) % corners]
+        at = sky_from(lighting, way_at(k, p0[0], p0[1], footprint, frame, images))
+        r, g, b = r + at[0] / corners, g + at[1] / corners, b + at[2] / corners
+        apart = max(apart, max(abs(at[0] - middle[0]), abs(at[1] - middle[1]), abs(at[2] - middle[2])))
+        share = abs((p0[0] - u) * (p1[1] - v) - (p1[0] - u) * (p0[1] - v))
+        x, y = (u + p0[0] + p1[0]) / 3.0, (v + p0[1] + p1[1]) / 3.0
+        at = sky_from(lighting, way_at(k, x, y, footprint, frame, images))
+        red, green, blue, whole = red + share * at[0], green + share * at[1], blue + share * at[2], whole + share
+    if partial or whole <= 0.0:
+        return middle[0], middle[1], middle[2], 0.5 * apart
+    red, green, blue = red / whole, green / whole, blue / whole
+    apart = max(abs(red - middle[0]), abs(green - middle[1]), abs(blue - middle[2]))
+    return red, green, blue, max(apart, 0.5 * max(abs(r - red), abs(g - green), abs(b - blue)))
+
+
+@leaf
 def look_into(
     k: int, tolerance: float, bright: float, long: float, turn: Floats, bounces: int, footprint: np.void,
     pattern: Pattern, frame: np.void, lighting: Lighting, last: Lighting, materials: NDArray[np.void],
@@ -223,7 +277,9 @@ def look_into(
     faces, found, total = local.faces, local.found, images.total
     eye = len(lighting.lights)
     first, end, level = images.first[k, 0], images.first[k, 1], images.level[k]
-    high = pattern.height
+    high, dim = pattern.height, DIM * tolerance
+    if has_picture(last):
+        dim /= VIVID
     seen.mirror[0] = images.mirror[k]
     for i in range(3):
         seen.eye[i] = seen.source[eye, i] = images.eye[k, i]
@@ -288,8 +344,8 @@ def look_into(
                             images.made[3] = 1
                         if shines:
                             bound = share * max(through[0], through[1], through[2])
-                            if bound <= DIM * tolerance:
-                                total[OFF] += bound * bright
+                            if bound <= dim:
+                                total[OFF] += bound / dim * DIM * tolerance * bright
                             elif bend > 0.0 or not open_window(f, k, share, part, corners, images):
                                 return False
                     r, g, b, unsure = colour_over(
@@ -302,17 +358,20 @@ def look_into(
                     total[OFF] += max(through[0], through[1], through[2]) * unsure
     for i in range(first, end):
         window, corners, rest = images.window[i], images.corners[i], images.rest[i]
-        u, v = centroid(window, corners, area(window, corners))
+        share = area(window, corners)
+        u, v = centroid(window, corners, share)
         through = passed_on(k, u, v, footprint, frame, pattern, materials, slots, local, images)
         most = max(through[0], through[1], through[2])
-        if abs(rest) * most <= DIM * tolerance:
-            total[OFF] += abs(rest) * most * bright
+        if abs(rest) * most <= dim:
+            total[OFF] += abs(rest) * most / dim * DIM * tolerance * bright
             continue
         if rest < 0.0 or not gets_away(i, footprint, high, local, seen, images):
             return False
-        total[RED] += rest * through[0] * last.sky[0]
-        total[GREEN] += rest * through[1] * last.sky[1]
-        total[BLUE] += rest * through[2] * last.sky[2]
+        r, g, b, unsure = sky_through(k, i, u, v, rest < WHOLE * share, footprint, frame, last, images)
+        total[RED] += rest * through[0] * r
+        total[GREEN] += rest * through[1] * g
+        total[BLUE] += rest * through[2] * b
+        total[OFF] += rest * most * unsure
     return True
 
 

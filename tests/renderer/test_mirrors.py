@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from renderer.tables import AREA, CSG, LINE
 
 from .scenes import SINGLE
+from .test_strings import window
 
 Json = dict[str, Any]
 Floats = NDArray[np.float64]
@@ -101,6 +102,26 @@ def test_area_shows_what_rays_meet(
     data = scene(plate, grooves, material, bounces, [SUN, LAMP, SKY], camera=INSIDE | {"resolution": [32, 24]})
     data["render"]["tolerance"] = 0.003
     compare(radiance, data, "area", samples=256)
+
+
+@pytest.mark.parametrize("bounces", [1, 3])
+@pytest.mark.parametrize("grooves", [CROSSED, LIPS, DITCHES], ids=["crossed", "lips", "ditches"])
+def test_area_shows_a_picture_of_the_sky(
+    plate: Callable[..., Json], picture: Callable[..., Any], grooves: list[Json], bounces: int
+) -> None:
+    """In chrome: what is smooth of it in closed form, the edges of what is bright in it by samples."""
+    sky = [{"type": "envmap", "file": "sky.exr", "rotate": 30}]
+    data = scene(plate, grooves, CHROME, bounces, sky, camera=INSIDE | {"resolution": [32, 24]})
+    one, two = (
+        picture(data, method="geometry", samples=900, seed=s, meshes=window()).radiance.astype(float) for s in (1, 2)
+    )
+    ours = picture(data, method="auto", meshes=window())
+    exact = ours.aovs["method"] == AREA
+    assert exact.mean() > 0.9
+    off = (ours.radiance - 0.5 * (one + two))[exact]
+    noise = np.sqrt((0.25 * (one - two)[exact] ** 2).mean())
+    assert np.sqrt((off**2).mean()) < 1.5 * noise + 0.0003
+    assert abs(off.mean()) < 0.0001
 
 
 @pytest.mark.parametrize("grooves", [CROSSED, LIPS], ids=["crossed", "lips"])
