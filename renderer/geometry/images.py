@@ -5,8 +5,8 @@ A ray through the screen's point (x, y) goes on from the image of the eye in the
 new eye; what of a face lies behind the mirror's plane is cut off by one more half-plane; and what is seen of the mirror
 is the window that all is seen through. What is seen there of another mirror is a window again.
 
-The sky is seen where nothing is: of a picture what is smooth, as a pixel's rays spread little; next to its edges samples
-know more.
+The sky is seen where nothing is: of a picture what is smooth, as a pixel's rays spread little. Next to its edges
+samples know more.
 
 The papers follow profiles along one direction and leave crossings out (000, 8); here nothing is left out but what is
 too small to matter, and what the faces at hand do not reach.
