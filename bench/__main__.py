@@ -3,9 +3,9 @@
     python -m bench [truth] [papers] [special] [speed] [memory] [startup]
     python -m bench stability
 
-Takes about a quarter of an hour on two cores, nearly all for the references of `papers`, which writes docs/PAPERS.md,
-and of `special`, which keeps its own in bench/out.
-`stability` takes up to twice as long, is measured only where it is named, and writes the maps and tables of
+Takes about three quarters of an hour on two cores, nearly all for the references of `papers`, which writes
+docs/PAPERS.md, and of `special`, which keeps its own in bench/out. `stability` takes about twenty minutes, is measured
+only where it is named, and writes the maps and tables of
 docs/STABILITY.md.
 """
 

@@ -277,9 +277,7 @@ def look_into(
     faces, found, total = local.faces, local.found, images.total
     eye = len(lighting.lights)
     first, end, level = images.first[k, 0], images.first[k, 1], images.level[k]
-    high, dim = pattern.height, DIM * tolerance
-    if has_picture(last):
-        dim /= VIVID
+    high, vivid = pattern.height, VIVID if has_picture(last) else 1.0
     seen.mirror[0] = images.mirror[k]
     for i in range(3):
         seen.eye[i] = seen.source[eye, i] = images.eye[k, i]
@@ -343,9 +341,9 @@ def look_into(
                         if level < bounces and scatters(material):
                             images.made[3] = 1
                         if shines:
-                            bound = share * max(through[0], through[1], through[2])
-                            if bound <= dim:
-                                total[OFF] += bound / dim * DIM * tolerance * bright
+                            bound = vivid * share * max(through[0], through[1], through[2])
+                            if bound <= DIM * tolerance:
+                                total[OFF] += bound * bright
                             elif bend > 0.0 or not open_window(f, k, share, part, corners, images):
                                 return False
                     r, g, b, unsure = colour_over(
@@ -362,8 +360,8 @@ def look_into(
         u, v = centroid(window, corners, share)
         through = passed_on(k, u, v, footprint, frame, pattern, materials, slots, local, images)
         most = max(through[0], through[1], through[2])
-        if abs(rest) * most <= dim:
-            total[OFF] += abs(rest) * most / dim * DIM * tolerance * bright
+        if vivid * abs(rest) * most <= DIM * tolerance:
+            total[OFF] += vivid * abs(rest) * most * bright
             continue
         if rest < 0.0 or not gets_away(i, footprint, high, local, seen, images):
             return False

@@ -437,6 +437,11 @@ def _summed(at: int, i: int, u: float, s: Strings) -> tuple[Vector, Vector]:
 
 
 @leaf
+def _trapezoid(x: float, inner: float, outer: float) -> float:
+    return 1.0 if abs(x) <= inner else max((outer - abs(x)) / (outer - inner), 0.0)
+
+
+@leaf
 def gathered(
     at: int, i: int, u0: float, u1: float, low: float, high: float, inner: float, outer: float, s: Strings
 ) -> Vector:  # fmt: skip
@@ -450,8 +455,7 @@ def gathered(
     y1, z1 = _summed(at, i, u1, s)
     red, green, blue, whole = y1[0] - y0[0], y1[1] - y0[1], y1[2] - y0[2], u1 - u0
     if low < -inner or high > inner:
-        fall, rate = 1.0 / (outer - inner), (u1 - u0) / (high - low)
-        g0, g1 = max(min((outer - abs(low)) * fall, 1.0), 0.0), max(min((outer - abs(high)) * fall, 1.0), 0.0)
+        g0, g1, rate = _trapezoid(low, inner, outer), _trapezoid(high, inner, outer), (u1 - u0) / (high - low)
         red, green, blue = g1 * y1[0] - g0 * y0[0], g1 * y1[1] - g0 * y0[1], g1 * y1[2] - g0 * y0[2]
         total, least = g1 * u1 - g0 * u0, CORNER * whole
         if low < -inner:

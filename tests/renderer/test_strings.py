@@ -222,6 +222,16 @@ def test_truth(plate: Callable[..., Json], picture: Callable[..., Any], case: st
         as_near_as_noise(one, other, ours.radiance.astype(float), 0.0015)
 
 
+def test_along_the_pixels(plate: Callable[..., Json], radiance: Callable[..., Floats]) -> None:
+    """Grooves along the pixels' sides, where a footprint weighs all alike, are seen as those turned a little."""
+    shown = []
+    for turn in (0.0, 1e-3):
+        path = {"type": "polyline", "points": [[0.92 - turn, 0], [0.92 + turn, 2]]}
+        camera = {"origin": [0, 0, 60], "target": [0, 0, 0], "up": [0, 1, 0], "fov": 0.4}
+        shown.append(radiance(plain(plate, BOX, [SKY], 8, groove={"path": path}, camera=camera), method="line"))
+    assert np.abs(shown[0] - shown[1]).max() < 2e-3
+
+
 def test_two_materials_and_light_of_their_own(plate: Callable[..., Json], picture: Callable[..., Any]) -> None:
     glow = {"base_color": [0.2, 0.3, 0.8], "specular": 0, "emissive": [0.2, 0.05, 0]}
     half = {"base_color": [0.63, 0.21, 0.14], "specular": 0}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -32,3 +33,12 @@ def test_page_lock_names_no_address() -> None:
 def test_our_requirements_do_not_include_our_own_names_from_elsewhere() -> None:
     for lock in LOCKS:
         assert not re.search(r"^(schema|renderer|service)==", lock.read_text(), re.MULTILINE)
+
+
+def test_nothing_large_is_kept() -> None:
+    """What is built, downloaded or measured in bulk stays out: once committed, it stays in the history for good."""
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=False)
+    if listed.returncode != 0:
+        pytest.skip("no git repository")
+    files = [ROOT / name for name in listed.stdout.split("\0") if name]
+    assert [file.name for file in files if file.exists() and file.stat().st_size > 1 << 20] == []
