@@ -1,7 +1,8 @@
 """The renderer: a scene in, a picture out.
 
 numba caches a compiled kernel by the file it stands in and overlooks edits to the functions it calls in other files.
-So the cache lives in a folder named after the sources of all kernels; it must be named before numba is imported.
+So the cache lives in a folder named after the sources of all kernels, and after where they stand, as numba looks for
+its own by that, too; it must be named before numba is imported.
 """
 
 import hashlib
@@ -12,8 +13,8 @@ from pathlib import Path
 
 
 def _cache_directory() -> Path:
-    """A writable folder for compiled kernels, one for each state of the sources."""
-    digest = hashlib.sha256(sys.version.encode())
+    """A writable folder for compiled kernels, one for each place and each state of the sources."""
+    digest = hashlib.sha256(f"{sys.version} {Path(__file__).parent}".encode())
     for source in sorted(Path(__file__).parent.rglob("*.py")):
         digest.update(source.read_bytes())
     name = f"kernels-{digest.hexdigest()[:16]}"
