@@ -217,7 +217,7 @@ def line(
     diagonal = math.hypot(pattern.width, pattern.depth)
     ridged = pattern.height > 0.0
     if has_picture(lighting) and (answer & (MIRROR | GLOSSY) != 0 or (paper and gathers)):
-        for index in chosen:  # of the picture rays get more than a few directions
+        for index in chosen:  # rays get more of the picture than a few directions, and the papers' T turns along arcs
             method[index] = NOT_MINE
         return
     stretched, stretch_x, stretch_y, stretch = -1, 0.0, 0.0, 0.0  # a frame and T, and what `stretch_of` says of them

@@ -167,6 +167,17 @@ def sky_from(lighting: Lighting, direction: Vector) -> Vector:
 
 
 @leaf
+def sky_over(lighting: Lighting, n: Vector) -> Vector:
+    """Radiance of a white matt surface turned to n, by all of the sky."""
+    sky = lighting.sky
+    red, green, blue = sky[0], sky[1], sky[2]
+    if has_picture(lighting):
+        more = looked_up(lighting.surroundings, IRRADIANCE, n)
+        red, green, blue = red + more[0], green + more[1], blue + more[2]
+    return red, green, blue
+
+
+@leaf
 def between(albedo: NDArray[np.float64], cosine: float, roughness: float, column: int) -> float:
     """A column of the table of `gloss_albedo`, bilinearly."""
     last = albedo.shape[0] - 1
@@ -279,12 +290,9 @@ def ambient(material: np.void, lighting: Lighting, albedo: NDArray[np.float64], 
     `albedo` is the table of `gloss_albedo`.
     """
     glow, base, sky = material.emissive, material.base_color, lighting.sky
-    body = gloss = (sky[0], sky[1], sky[2])  # the sky's mean over the cosine, and over the lobe that shines
-    if has_picture(lighting):
-        more = looked_up(lighting.surroundings, IRRADIANCE, n)
-        body = (sky[0] + more[0], sky[1] + more[1], sky[2] + more[2])
-    elif sky[0] == 0.0 and sky[1] == 0.0 and sky[2] == 0.0:
+    if not has_picture(lighting) and sky[0] == 0.0 and sky[1] == 0.0 and sky[2] == 0.0:
         return glow[0], glow[1], glow[2]
+    body, gloss = sky_over(lighting, n), (sky[0], sky[1], sky[2])  # the sky's mean over the cosine, and over the lobe
     diffuse = (1.0 - material.metallic) * (1.0 - material.transmission)
     if material.metallic == 0.0 and material.f90 == 0.0:
         return (

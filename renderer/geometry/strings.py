@@ -34,8 +34,8 @@ from renderer.geometry.reach import Reach
 from renderer.geometry.section import foot_of, fraction_at, onto_base, spans
 from renderer.geometry.view import View
 from renderer.kernel import callee, fixed, leaf
-from renderer.shading import Vector, dot, has_picture, light_to_pattern, looked_up, normal_to_world, to_world, unit
-from renderer.tables import DIRECTIONAL, IRRADIANCE, Floats, Lighting, Pattern
+from renderer.shading import Vector, dot, has_picture, light_to_pattern, normal_to_world, sky_over, to_world, unit
+from renderer.tables import DIRECTIONAL, Floats, Lighting, Pattern
 
 ELEMENTS = fixed(288)  # of one cross-section; more are left to sampling
 ELEMENTS_ABOUT = 32.0  # of one with few facets
@@ -296,7 +296,7 @@ def exchange(
     (b, w): the cross-section in place; row: of its facets' materials; lit: (lights, facets, 2) their lit parts. What
     they get from the sky is in `s.open`.
     """
-    lights, sky = lighting.lights, lighting.sky
+    lights = lighting.lights
     first, node = s.first[at], s.node[at]
     facets = s.facets[at]
     n = first[facets]
@@ -311,10 +311,7 @@ def exchange(
         base, glow = material.base_color, material.emissive
         diffuse = (1.0 - material.metallic) * (1.0 - material.transmission)
         normal = normal_to_world(frame, (-rise * bx, -rise * by, run))
-        around = (sky[0], sky[1], sky[2])
-        if has_picture(lighting):
-            more = looked_up(lighting.surroundings, IRRADIANCE, normal)
-            around = (sky[0] + more[0], sky[1] + more[1], sky[2] + more[2])
+        around = sky_over(lighting, normal)
         for e in range(first[i], first[i + 1]):
             u0, u1 = node[e + i], node[e + i + 1]
             red = green = blue = 0.0
