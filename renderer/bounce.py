@@ -88,14 +88,14 @@ def meet_sky(rays: NDArray[np.void], chosen: NDArray[np.int64], lighting: Lighti
 @kernel
 def meet_surface(
     seed: int, pattern: Pattern, objects: NDArray[np.void], rays: NDArray[np.void], chosen: NDArray[np.int64],
-    frames: NDArray[np.void], blocked: NDArray[np.uint64], footprints: NDArray[np.void], lighting: Lighting,
-    materials: NDArray[np.void], slots: NDArray[np.int32], albedo: Floats, radiance: Floats, leaving: NDArray[np.void],
-    gone: NDArray[np.int64],
+    hits: NDArray[np.void], frames: NDArray[np.void], of: Ints, blocked: NDArray[np.uint64],
+    footprints: NDArray[np.void], lighting: Lighting, materials: NDArray[np.void], slots: NDArray[np.int32],
+    albedo: Floats, radiance: Floats, leaving: NDArray[np.void], gone: NDArray[np.int64],
 ) -> None:  # fmt: skip
-    """Rays RAY that meet one object, each at the origin of its FRAME: add what they see to the radiance of their
-    footprints.
+    """Rays RAY that meet one object, at their `hits` (n,): add what they see to the radiance of their footprints.
 
-    blocked: (n,) masks of the lights that do not reach the frame's origin. leaving, gone: as `csg`.
+    frames, of: FRAMEs, and which each hit has. blocked: (n,) masks of the lights that do not reach the hit. leaving,
+    gone: as `csg`.
     """
     owned = nearby(pattern, max(pattern.near, 1)), events(pattern)
     found, spans = borrow(owned[0]), borrow(owned[1])
@@ -103,7 +103,7 @@ def meet_surface(
     albedo, leaving = borrow(albedo), borrow(leaving)
     high, low = pattern.height + thin_of(pattern), -pattern.depth - thin_of(pattern)
     for k in chosen:
-        ray, frame = rays[k], frames[k]
+        ray, hit, frame = rays[k], hits[k], frames[of[k]]
         obj = objects[frame.object]
         footprint = footprints[ray.row // EIGHTHS]
         way = (ray.way[0], ray.way[1], ray.way[2])
@@ -111,14 +111,15 @@ def meet_surface(
         if is_round(obj, frame):
             o, d = from_world(obj, (ray.origin[0], ray.origin[1], ray.origin[2])), local(obj, way[0], way[1], way[2])
             at = from_world(obj, (frame.origin[0], frame.origin[1], frame.origin[2]))
-            hit = (at[0] - o[0]) * d[0] + (at[1] - o[1]) * d[1] + (at[2] - o[2]) * d[2]
-            start = chart(obj, ahead(o, d, entered(pattern, obj, o, d, frame.within == 1, hit)))
+            t = (at[0] - o[0]) * d[0] + (at[1] - o[1]) * d[1] + (at[2] - o[2]) * d[2]
+            start = chart(obj, ahead(o, d, entered(pattern, obj, o, d, frame.within == 1, t)))
         else:
             d = direction_to_pattern(frame, way)
             rise = leveled(d[0], d[1], d[2], LEVEL)
             w = low if frame.within == 1 else high
             slope_p, slope_q = d[0] / rise, d[1] / rise
-            p, q, gp, gq = frame.pq[0], frame.pq[1], slope_p, slope_q
+            m = obj.mapping
+            p, q, gp, gq = hit.u * m[0] + m[2], hit.v * m[1] + m[3], slope_p, slope_q
             if is_curved(frame) and len(pattern.pieces) > 0:  # the chord where it is over the base
                 p, q, gp, gq = sight_over(frame, p, q, slope_p, slope_q, high, low)
             start, steer = (p + w * gp, q + w * gq, w), (gp - slope_p, gq - slope_q)
@@ -156,8 +157,8 @@ class Shapes(Protocol):
     def hits(self, origin: Floats, directions: Floats, own: Ints | None = None) -> NDArray[np.void]:
         """The nearest HIT (n,) of each ray from `origin` (n, 3) along `directions` (n, 3)."""
 
-    def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> NDArray[np.void]:
-        """The tangent FRAME (n,) at each of the hits."""
+    def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> tuple[NDArray[np.void], Ints]:
+        """The tangent FRAMEs at the hits, and which (n,) each has."""
 
     def blocked(
         self, origin: Floats, directions: Floats, hits: NDArray[np.void], lights: NDArray[np.void]
@@ -187,16 +188,16 @@ def meet(
         origin, way, own = np.empty((len(rays), 3)), np.empty((len(rays), 3)), np.empty(len(rays), np.int32)
         depart(rays, shapes.objects, shapes.start, origin, way, own)
         hits = shapes.hits(origin, way, own)
-        frames, blocked = shapes.frames(origin, way, hits), shapes.blocked(origin, way, hits, lighting.lights)
+        (frames, of), blocked = shapes.frames(origin, way, hits), shapes.blocked(origin, way, hits, lighting.lights)
         leaving, gone = np.empty(len(rays), RAY), np.zeros(1, np.int64)
         order, ends = np.empty(len(rays), np.int64), np.empty(2 * len(shapes.objects) + 2, np.int64)
-        arrange(hits, frames, order, ends)
+        arrange(hits, frames, of, order, ends)
         meet_sky(rays, order[: ends[1]], lighting, radiance)
         for k in np.flatnonzero(np.diff(ends[1:])) + 1:
             row, grooved = divmod(int(k) - 1, 2)
             meet_surface(
                 seed, patterns[shapes.objects["pattern"][row]] if grooved else BARE, shapes.objects, rays,
-                order[ends[k] : ends[k + 1]], frames, blocked, footprints, lighting, materials, slots[row], albedo,
-                radiance, leaving, gone,
+                order[ends[k] : ends[k + 1]], hits, frames, of, blocked, footprints, lighting, materials, slots[row],
+                albedo, radiance, leaving, gone,
             )  # fmt: skip
         rays = leaving[: gone[0]]

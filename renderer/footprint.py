@@ -41,8 +41,8 @@ class Shapes(Protocol):
     def hits(self, origin: Floats, directions: Floats) -> NDArray[np.void]:
         """The nearest HIT (n,) of each ray from `origin` (3,) along `directions` (n, 3)."""
 
-    def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> NDArray[np.void]:
-        """The tangent FRAME (n,) at each of the hits."""
+    def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> tuple[NDArray[np.void], Ints]:
+        """The tangent FRAMEs at the hits, and which (n,) each has."""
 
     @property
     def shells(self) -> Shells | None:
@@ -99,7 +99,7 @@ def flat_frames(shapes: Shapes, origin: Floats) -> dict[int, NDArray[np.void]]:
         if obj["shape"] == RECTANGLE and float(normal @ (origin - obj["translation"])) > 0.0:
             hit = np.zeros(1, HIT)
             hit["object"], hit["t"], hit["u"], hit["v"], hit["normal"] = row, 1.0, 0.5, 0.5, normal
-            frames[row] = shapes.frames(origin, (obj["translation"] - origin)[None, :], hit)
+            frames[row], _ = shapes.frames(origin, (obj["translation"] - origin)[None, :], hit)
     return frames
 
 
@@ -284,9 +284,10 @@ def _framed(
             shared.append(frame)
             rest &= ~of
     curved = keep[rest]
-    out["frame"][rest] = len(shared) + np.arange(len(curved))
     if len(curved):
-        shared.append(shapes.frames(eyes[curved], directions[curved], hits[curved]))
+        more, which = shapes.frames(eyes[curved], directions[curved], hits[curved])
+        out["frame"][rest] = len(shared) + which
+        shared.append(more)
     return Footprints(out, np.concatenate(shared) if shared else np.zeros(0, FRAME))
 
 

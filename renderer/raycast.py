@@ -93,12 +93,13 @@ class Caster:
             cast_triangles(self.triangles, origins, directions, found["primID"].astype(np.int32), hits)
         return hits
 
-    def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> NDArray[np.void]:
-        """The tangent FRAME (n,) at each of the hits (n,), anything for a miss; the origin is (3,) or (n, 3)."""
-        frames = np.empty(len(hits), FRAME)
+    def frames(self, origin: Floats, directions: Floats, hits: NDArray[np.void]) -> tuple[NDArray[np.void], Ints]:
+        """The tangent FRAMEs at the hits (n,), and which (n,) is each one's, -1 a miss's; the origin is (3,) or (n, 3).
+        On a side of a rectangle all have the first one's."""
+        frames, of = np.empty(len(hits), FRAME), np.empty(len(hits), np.int32)
         origins = np.ascontiguousarray(np.broadcast_to(origin, directions.shape))
-        frames_at(self.objects, self.triangles, origins, directions, hits, self.bent, frames)
-        return frames
+        made = frames_at(self.objects, self.triangles, origins, directions, hits, self.bent, frames, of)
+        return frames[:made], of
 
     def blocked(
         self, origin: Floats, directions: Floats, hits: NDArray[np.void], lights: NDArray[np.void]

@@ -33,7 +33,7 @@ def matt_direction(n: Vector, u: float, v: float) -> Vector:
     s, t = axes(n)
     turn = 2.0 * math.pi * v
     x, y, z = math.sqrt(u) * math.cos(turn), math.sqrt(u) * math.sin(turn), math.sqrt(max(1.0 - u, 0.0))
-    return unit((x * s[0] + y * t[0] + z * n[0], x * s[1] + y * t[1] + z * n[1], x * s[2] + y * t[2] + z * n[2]))
+    return x * s[0] + y * t[0] + z * n[0], x * s[1] + y * t[1] + z * n[1], x * s[2] + y * t[2] + z * n[2]
 
 
 @leaf
@@ -153,6 +153,8 @@ def scatter(
     if ne <= 0.0:
         return n, none
     base, metallic = material.base_color, material.metallic
+    if metallic == 0.0 and material.f90 == 0.0 and material.transmission == 0.0:  # matt alone: what is below comes to
+        return matt_direction(n, u, v), (base[0], base[1], base[2])
     schlick = (1.0 - min(ne, 1.0)) ** 5
     brightness = (base[0] + base[1] + base[2]) / 3.0
     coat = material.f0 + (material.f90 - material.f0) * schlick

@@ -27,7 +27,7 @@ from renderer.geometry.solid import (
     shadow_ray,
     thin_of,
 )
-from renderer.geometry.spans import BODY, PLANE, Events
+from renderer.geometry.spans import BODY, NO, PLANE, Events
 from renderer.kernel import callee
 from renderer.scattering import TOUCH, is_mirrored, scatter
 from renderer.shading import (
@@ -86,7 +86,7 @@ def follow(
         if rounded:
             o = carried(obj, x, y, w)
             d = local(obj, way[0], way[1], way[2])
-            passed = pass_through(pattern, found, spans, obj, o, d, (x, y, w), 0.0, math.inf, within, False, stray)
+            passed = pass_through(pattern, found, spans, obj, o, d, (x, y, w), 0.0, math.inf, within, NO, stray)
             m, gp, gq, rises = passed.meeting, passed.gp, passed.gq, not passed.descends
             leaves = passed.leaves
         else:
@@ -98,7 +98,9 @@ def follow(
             top, bottom, sense = w, -pattern.depth - thin_of(pattern), SINK if within else DOWN
             if rises:
                 top, bottom, sense = pattern.height + thin_of(pattern), w, RISE if within else UP
-            m = meet_far(pattern, found, spans, x, y, w, gp, gq, top, bottom, sense)
+            m = OPEN
+            if within or not rises or w < pattern.height:
+                m = meet_far(pattern, found, spans, x, y, w, gp, gq, top, bottom, sense)
             leaves = rises != within
             if m.w == -math.inf:
                 clear = max((bottom if within else 0.0) - w, 0.0) / rise

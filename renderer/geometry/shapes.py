@@ -246,15 +246,18 @@ def block(
 
 
 @leaf
-def in_shade(objects: NDArray[np.void], lights: NDArray[np.void], own: int, at: Vector) -> np.uint64:
-    """The bits of the lights that a shape, meshes aside, keeps from a point of the object `own`."""
+def in_shade(objects: NDArray[np.void], lights: NDArray[np.void], own: int, at: Vector, over: Vector) -> np.uint64:
+    """The bits of the lights that a shape, meshes aside, keeps from a point of the object `own`.
+
+    over: what is on its side is asked for alone; (0, 0, 0): all.
+    """
     mask = np.uint64(0)
     for l in range(len(lights)):
         v, far = lights[l].vector, math.inf
         way = (v[0], v[1], v[2])
         if lights[l].kind == POINT:
             way, far = (v[0] - at[0], v[1] - at[1], v[2] - at[2]), NEXT_TO
-        if stands_before(objects, own, at, way, far):
+        if way[0] * over[0] + way[1] * over[1] + way[2] * over[2] >= 0.0 and stands_before(objects, own, at, way, far):
             mask |= np.uint64(1) << np.uint64(l)
     return mask
 
@@ -265,7 +268,7 @@ def shade(
 ) -> None:
     """Set the bits of the lights that a shape, meshes aside, keeps from points (n, 3) of the objects `own` (n,)."""
     for i in range(len(points)):
-        masks[i] |= in_shade(objects, lights, own[i], (points[i, 0], points[i, 1], points[i, 2]))
+        masks[i] |= in_shade(objects, lights, own[i], (points[i, 0], points[i, 1], points[i, 2]), (0.0, 0.0, 0.0))
 
 
 @kernel
@@ -273,24 +276,28 @@ def shade_hits(
     objects: NDArray[np.void], lights: NDArray[np.void], origins: Floats, directions: Floats, hits: NDArray[np.void],
     masks: NDArray[np.uint64],
 ) -> None:  # fmt: skip
-    """The same for the hits of rays; misses are in no shade."""
+    """The same for the hits of rays; misses are in no shade, nor rectangles in one from behind."""
     for i in range(len(hits)):
         hit, o, d = hits[i], origins[i], directions[i]
         if hit.object >= 0:
             at = (o[0] + hit.t * d[0], o[1] + hit.t * d[1], o[2] + hit.t * d[2])
-            masks[i] |= in_shade(objects, lights, hit.object, at)
+            n, over = hit.normal, (0.0, 0.0, 0.0)
+            if objects[hit.object].shape == RECTANGLE:
+                side = -math.copysign(1.0, n[0] * d[0] + n[1] * d[1] + n[2] * d[2])
+                over = (side * n[0], side * n[1], side * n[2])
+            masks[i] |= in_shade(objects, lights, hit.object, at, over)
 
 
 @kernel
 def arrange(
-    hits: NDArray[np.void], frames: NDArray[np.void], order: NDArray[np.int64], ends: NDArray[np.int64]
+    hits: NDArray[np.void], frames: NDArray[np.void], of: Ints, order: NDArray[np.int64], ends: NDArray[np.int64]
 ) -> None:
     """Fill `order` (n,) with the hits by what they met: nothing, then bare and grooved of the first object, and so on;
     each from ends[k] to ends[k + 1], in their order."""
     ends[:] = 0
     for i in range(len(hits)):
         if hits[i].object >= 0:
-            order[i] = 2 * hits[i].object + 2 - (frames[i].grooved == 0)
+            order[i] = 2 * hits[i].object + 2 - (frames[of[i]].grooved == 0)
         else:
             order[i] = 0
         ends[order[i] + 1] += 1
@@ -391,21 +398,33 @@ def bend(obj: np.void, triangles: Triangles, hit: np.void, frame: np.void) -> No
 @kernel
 def frames_at(
     objects: NDArray[np.void], triangles: Triangles, origins: Floats, directions: Floats, hits: NDArray[np.void],
-    bent: bool, frames: NDArray[np.void],
-) -> None:  # fmt: skip
-    """The tangent frame (n,) FRAME at each hit (n,) of the rays from `origins` (n, 3) along `directions` (n, 3); of a
-    miss it is left as it was.
+    bent: bool, frames: NDArray[np.void], of: Ints,
+) -> int:  # fmt: skip
+    """Write the tangent FRAMEs at the hits (n,) of the rays from `origins` (n, 3) along `directions` (n, 3), and `of`
+    which (n,) each is; how many there are. Hits on one side of a rectangle share the first one's; a miss has none.
 
     Seen from behind, an opaque surface is bare and turned to the viewer. bent: what carries no pattern has a form, too.
     """
+    shared = np.full((len(objects), 2), -1)
+    made = 0
     for i in range(len(hits)):
-        hit, frame, origin = hits[i], frames[i], origins[i]
+        hit, origin = hits[i], origins[i]
+        of[i] = -1
         if hit.object < 0:
             continue
         obj = objects[hit.object]
         d = directions[i]
-        p = (origin[0] + hit.t * d[0], origin[1] + hit.t * d[1], origin[2] + hit.t * d[2])
         n = (hit.normal[0], hit.normal[1], hit.normal[2])
+        turned = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0
+        if obj.shape == RECTANGLE:
+            of[i] = shared[hit.object, int(turned)]
+            if of[i] >= 0:
+                continue
+            shared[hit.object, int(turned)] = made
+        of[i] = made
+        frame = frames[made]
+        made += 1
+        p = (origin[0] + hit.t * d[0], origin[1] + hit.t * d[1], origin[2] + hit.t * d[2])
         frame.object = hit.object
         frame.grooved = 1 if obj.pattern >= 0 else 0
         m = obj.mapping
@@ -450,7 +469,6 @@ def frames_at(
             a, b = out_of(obj, lu), out_of(obj, lv)
         a = (a[0] / m[0], a[1] / m[0], a[2] / m[0])
         b = (b[0] / m[1], b[1] / m[1], b[2] / m[1])
-        turned = n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0
         frame.within = 1 if turned and obj.clear == 1 else 0
         if turned and obj.clear == 0:
             n = (-n[0], -n[1], -n[2])
@@ -459,6 +477,7 @@ def frames_at(
         frame.form[:], frame.drift[:] = 0.0, 0.0
         if frame.grooved == 1 or (bent and not turned and not (hit.face == 1 and obj.shape == CYLINDER)):
             bend(obj, triangles, hit, frame)
+    return made
 
 
 @kernel

@@ -29,7 +29,7 @@ from renderer.geometry.solid import (
     polish,
     thin_of,
 )
-from renderer.geometry.spans import BODY, END, PLANE, Events
+from renderer.geometry.spans import BODY, END, NO, PLANE, YES, Events
 from renderer.kernel import callee, leaf
 from renderer.shading import unit
 from renderer.tables import CYLINDER, POINT, SPHERE, Pattern
@@ -302,7 +302,7 @@ def seen_from(
             ground = meet(pattern, found, spans, -1, here[0], here[1], 0.0, 0.0, high, low, DOWN).w
             if here[2] < ground:
                 return Passage(Meeting(here[2], END, PLANE, BODY), here[0], here[1], here[2], 0.0, 0.0, True, False)
-        return pass_through(pattern, found, spans, obj, o, d, here, begin, math.inf, False, False, stray)
+        return pass_through(pattern, found, spans, obj, o, d, here, begin, math.inf, NO, NO, stray)
     if math.isnan(bare):
         bare = -m[1] / m[0]
         x = ahead(o, d, bare)
@@ -310,7 +310,7 @@ def seen_from(
         o = (o[0] + inwards * x[0], o[1] + inwards * x[1], o[2] + (0.0 if obj.shape == CYLINDER else inwards * x[2]))
     begin = entered(pattern, obj, o, d, False, bare)
     here = chart(obj, ahead(o, d, begin))
-    passed = pass_through(pattern, found, spans, obj, o, d, here, begin, math.inf, False, False, stray)
+    passed = pass_through(pattern, found, spans, obj, o, d, here, begin, math.inf, NO, NO, stray)
     if passed.meeting.w > -math.inf:
         return passed
     x = chart(obj, ahead(o, d, bare))
@@ -330,4 +330,4 @@ def is_shaded(
         d = (at[0] - o[0], at[1] - o[1], at[2] - o[2])
     else:
         d = local(obj, v[0], v[1], v[2])
-    return pass_through(pattern, found, spans, obj, o, d, (x, y, w), 0.0, end, False, True, stray).meeting.w > -math.inf
+    return pass_through(pattern, found, spans, obj, o, d, (x, y, w), 0.0, end, NO, YES, stray).meeting.w > -math.inf

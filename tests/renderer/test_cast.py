@@ -247,14 +247,14 @@ def test_uv(
     hit = caster.hits(start, way)
     assert (float(hit["u"][0]), float(hit["v"][0])) == pytest.approx(uv, abs=1e-6)
     assert hit["normal"][0] == pytest.approx(normal, abs=1e-6)
-    frame = caster.frames(start, way, hit)[0]
+    frame = caster.frames(start, way, hit)[0][0]
     assert frame["pq"] == pytest.approx((uv[0] * 2 + 5, uv[1] * 3 + 7), abs=1e-6)
     h = 1e-4  # a small step along dP/dp must change p by as much
     for axis, change in ((0, (h, 0.0)), (1, (0.0, h))):
         aside = start + h * frame["axes"][:, axis]
         near = caster.hits(aside, way)
         if near["object"][0] >= 0:
-            moved = caster.frames(aside, way, near)[0]["pq"] - frame["pq"]
+            moved = caster.frames(aside, way, near)[0][0]["pq"] - frame["pq"]
             assert moved == pytest.approx(change, abs=1e-2 * h)
 
 

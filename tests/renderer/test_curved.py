@@ -21,7 +21,7 @@ from renderer import body
 from renderer.geometry import curve
 from renderer.geometry.shapes import NO_TRIANGLES, Triangles
 from renderer.raycast import Caster
-from renderer.tables import CYLINDER, HIT, MESH, OBJECT, SPHERE
+from renderer.tables import CYLINDER, HIT, MESH, OBJECT, SPHERE, Ints
 
 from .parts import alone
 
@@ -85,10 +85,10 @@ def tangent_planes() -> Iterator[None]:
     """Nothing is known of the base's curvature."""
     frames = Caster.frames
 
-    def flattened(self: Caster, *hits: Any) -> NDArray[np.void]:
-        made = frames(self, *hits)
+    def flattened(self: Caster, *hits: Any) -> tuple[NDArray[np.void], Ints]:
+        made, of = frames(self, *hits)
         made["form"] = 0.0
-        return made
+        return made, of
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Caster, "frames", flattened)
@@ -130,7 +130,7 @@ def frame_at(shape: int, size: Floats, mapping: Floats, u: float, v: float) -> n
     eye = turn @ (at + normal) + obj["translation"][0]
     hit = np.zeros(1, HIT)
     hit["t"], hit["u"], hit["v"], hit["normal"] = 1.0, u, v, turn @ normal
-    frame: np.void = Caster(obj).frames(eye, -(turn @ normal)[None], hit)[0]
+    frame: np.void = Caster(obj).frames(eye, -(turn @ normal)[None], hit)[0][0]
     return frame
 
 
@@ -196,7 +196,7 @@ def test_the_form_of_a_mesh_is_that_of_the_surface_its_normals_tell() -> None:
         caster = Caster(obj, triangles)
         hit = caster.hits(eye, (middle - eye)[None])
         assert hit["object"][0] == 0
-        form = caster.frames(eye, (middle - eye)[None], hit)[0]["form"]
+        form = caster.frames(eye, (middle - eye)[None], hit)[0][0]["form"]
         assert np.allclose(form, [expected, 0.0, 0.0], rtol=0, atol=2.0 * angle)
     assert not Caster(obj, NO_TRIANGLES).shadows
 
