@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import math
 import tempfile
 from pathlib import Path
 
@@ -11,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from renderer.geometry.view import sky_behind
 from renderer.kernel import borrow, kernel
-from renderer.shading import has_picture, sky_from, unit
 from renderer.tables import METHODS, Camera, Floats, Lighting
 
 Aov = NDArray[np.uint8] | NDArray[np.float32]
 SUFFIXES = (".png", ".exr", ".npy")
-FINEST = 16  # places in a pixel, each way, at which a picture of the sky is looked at, at most
 
 COLOURS = np.array(
     [
@@ -50,24 +48,11 @@ def develop(
         for c in range(4):
             image[pixel, c] += weight * radiance[i, c]
         image[pixel, 4] += radiance[i, 4]
-    lighting, corner, right, down = borrow(lighting), camera.corner, camera.right, camera.down
-    across = 1  # places in a pixel, each way, at which the sky is looked at: where it is a picture, no texel is missed
-    if has_picture(lighting):
-        size = math.sqrt(max(right[0] ** 2 + right[1] ** 2 + right[2] ** 2, down[0] ** 2 + down[1] ** 2 + down[2] ** 2))
-        finest = max(lighting.surroundings.tables[0, 1], lighting.surroundings.tables[0, 2] // 2)
-        across = min(max(int(math.ceil(size * finest / math.pi)), 2), FINEST)
+    lighting = borrow(lighting)
     for pixel in range(len(image)):
-        open_part = max(1.0 - covered[pixel], 0.0) / (across * across)
-        if open_part <= 0.0:
-            continue
-        for k in range(across * across):
-            u = x + pixel % width + (k % across + 0.5) / across
-            v = y + pixel // width + (k // across + 0.5) / across
-            sky = sky_from(lighting, unit((
-                corner[0] + u * right[0] + v * down[0],
-                corner[1] + u * right[1] + v * down[1],
-                corner[2] + u * right[2] + v * down[2],
-            )))  # fmt: skip
+        open_part = 1.0 - covered[pixel]
+        if open_part > 0.0:
+            sky = sky_behind(lighting, camera, float(x + pixel % width), float(y + pixel // width), 1.0)
             for c in range(3):
                 image[pixel, c] += open_part * sky[c]
 

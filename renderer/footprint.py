@@ -110,15 +110,43 @@ def footprints(
     """The footprints of a tile. heights: (n, 2) of each row of OBJECT, how high and how deep its grooves are, pattern
     units. tolerance: the error of a pixel relative to white that its surface's turning may bring."""
     ys, xs = np.mgrid[0 : tile.height + 1, 0 : tile.width + 1]  # corners, shared by the pixels around
-    corner_rays = rays(camera, (xs + tile.x).ravel().astype(float), (ys + tile.y).ravel().astype(float))
-    corners = shapes.hits(camera.origin, corner_rays)
-    corner_mask = shapes.blocked(camera.origin, corner_rays, corners, lights)
+    corners = (xs + tile.x).ravel().astype(float), (ys + tile.y).ravel().astype(float)
     x, y = (xs[:-1, :-1] + tile.x).ravel().astype(float), (ys[:-1, :-1] + tile.y).ravel().astype(float)
     pixel = np.arange(tile.width * tile.height, dtype=np.int32)
     wide = tile.width + 1
     first = (pixel // tile.width) * wide + pixel % tile.width
     around = np.stack([first, first + 1, first + wide, first + wide + 1])  # (4, n)
-    size = 1.0
+    squares = x, y, np.ones(len(x))
+    return _split(shapes, camera, lights, pixel, squares, corners, around, flat, heights, tolerance, seed)
+
+
+def footprints_within(
+    shapes: Shapes, camera: Camera, lights: NDArray[np.void], squares: NDArray[np.void],
+    flat: dict[int, NDArray[np.void]], heights: Floats, tolerance: float, seed: int,
+) -> Footprints:  # fmt: skip
+    """The same for the squares of FOOTPRINTs (n,); `pixel` is which of these each is a part of."""
+    x, y, size = squares["x"].copy(), squares["y"].copy(), squares["size"].copy()
+    corners, around = _own_corners(x, y, size)
+    pixel = np.arange(len(squares), dtype=np.int32)
+    return _split(shapes, camera, lights, pixel, (x, y, size), corners, around, flat, heights, tolerance, seed)
+
+
+def _own_corners(x: Floats, y: Floats, size: Floats) -> tuple[tuple[Floats, Floats], NDArray[np.int64]]:
+    """The corners of squares (n,), and which (4, n) are each one's."""
+    corners = np.concatenate([x, x + size, x, x + size]), np.concatenate([y, y, y + size, y + size])
+    return corners, np.arange(4 * len(x)).reshape(4, -1)
+
+
+def _split(
+    shapes: Shapes, camera: Camera, lights: NDArray[np.void], pixel: Ints, squares: tuple[Floats, Floats, Floats],
+    places: tuple[Floats, Floats], around: NDArray[np.int64], flat: dict[int, NDArray[np.void]], heights: Floats,
+    tolerance: float, seed: int,
+) -> Footprints:  # fmt: skip
+    """The footprints in squares: left, top and edge, (n,) each, `around` (4, n) which of the `places` are corners."""
+    x, y, size = squares
+    corner_rays = rays(camera, *places)
+    corners = shapes.hits(camera.origin, corner_rays)
+    corner_mask = shapes.blocked(camera.origin, corner_rays, corners, lights)
     finest = levels(tolerance)
     done: list[Footprints] = []
     for level in range(finest + 1):
@@ -159,17 +187,14 @@ def footprints(
         split = ~smooth
         if not split.any():
             break
-        size *= 0.5
-        pixel = np.repeat(pixel[split], 4)
-        x = (x[split][:, None] + size * np.array([0.0, 1.0, 0.0, 1.0])).ravel()
-        y = (y[split][:, None] + size * np.array([0.0, 0.0, 1.0, 1.0])).ravel()
+        pixel, size = np.repeat(pixel[split], 4), np.repeat(0.5 * size[split], 4)
+        x = np.repeat(x[split], 4) + size * np.resize([0.0, 1.0, 0.0, 1.0], len(size))
+        y = np.repeat(y[split], 4) + size * np.resize([0.0, 0.0, 1.0, 1.0], len(size))
         if level + 1 < finest:
-            cx = np.concatenate([x, x + size, x, x + size])
-            cy = np.concatenate([y, y, y + size, y + size])
-            directions = rays(camera, cx, cy)
-            corners = shapes.hits(camera.origin, directions)
-            corner_mask = shapes.blocked(camera.origin, directions, corners, lights)
-            around = np.arange(len(corners)).reshape(4, -1)
+            places, around = _own_corners(x, y, size)
+            corner_rays = rays(camera, *places)
+            corners = shapes.hits(camera.origin, corner_rays)
+            corner_mask = shapes.blocked(camera.origin, corner_rays, corners, lights)
     out = _joined(done)
     if shapes.shadows:
         mark_torn(shapes, camera, lights, heights, out)
@@ -266,14 +291,14 @@ def _inside(x: Floats, y: Floats, seed: int) -> Floats:
 
 def _framed(
     shapes: Shapes, eyes: Floats, flat: dict[int, NDArray[np.void]], pixel: Ints, x: Floats, y: Floats, size: Floats,
-    side: float, directions: Floats, hits: NDArray[np.void], mask: NDArray[np.uint64], beside: NDArray[np.bool_],
+    side: Floats, directions: Floats, hits: NDArray[np.void], mask: NDArray[np.uint64], beside: NDArray[np.bool_],
     keep: NDArray[np.int64],
 ) -> Footprints:  # fmt: skip
-    """The footprints among the squares (n,) that `keep` lists, in parts of a pixel with this side, with frames; those
-    of a rectangle share one."""
+    """The footprints among the squares (n,) that `keep` lists, which stand for parts of a pixel with these sides, with
+    frames; those of a rectangle share one."""
     out = np.zeros(len(keep), FOOTPRINT)
     out["pixel"], out["x"], out["y"], out["blocked"] = pixel[keep], x[keep], y[keep], mask[keep]
-    out["size"], out["weight"], out["open"] = size[keep], side * side, np.where(beside[keep], BESIDE, 0)
+    out["size"], out["weight"], out["open"] = size[keep], side[keep] ** 2, np.where(beside[keep], BESIDE, 0)
     shared: list[NDArray[np.void]] = []
     rest = np.ones(len(keep), np.bool_)
     seen = hits["object"][keep]

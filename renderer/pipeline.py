@@ -14,27 +14,27 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 import schema
-from renderer import CACHE, body, bounce, film, relief, shading
-from renderer.area import REFLECTED, area_sampling, in_blocks
+from renderer import CACHE, body, bounce, film, mirror, relief, shading
+from renderer.area import ALL, REFLECTED, area_sampling, in_blocks
 from renderer.compile import CompiledScene, PatternCache, compile_scene, table_bytes
 from renderer.csg import MOST, csg
 from renderer.errors import Cancelled, Fault, RenderError
-from renderer.footprint import Footprints, Tile, flat_frames, footprints
+from renderer.footprint import Footprints, Tile, flat_frames, footprints, footprints_within
 from renderer.geometry.random import EIGHTHS
 from renderer.geometry.strips import STRIPS
 from renderer.line import LOOSE, PAPER, STRICT, line
 from renderer.lines import line_sampling
-from renderer.raycast import Caster
+from renderer.raycast import Caster, Mirrored
 from renderer.relief import Textures
 from renderer.sampling import EDGE, EVEN, FIRST, sampled, whiteness
-from renderer.shading import MIRROR, answers
+from renderer.shading import DIFFUSE, GLOSSY, MIRROR, answers
 from renderer.tables import AREA, BARE, BASE, CROWDED, CSG, MESH, NOT_MINE, RAY, Floats, Lighting, Pattern
 from renderer.trace import Truth
 
@@ -42,6 +42,7 @@ TILE = 64  # pixels
 RAYS = 1 << 14  # from one object to others, at a time
 ROUGH = 0.03  # the error that may be left on meshes' curved bases: next to the terminator light is wrong all over
 FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster,
+WEAK = 0.1  # the tolerance, at most, of what a weak mirror shows
 FEWER_STRIPS = 64  # ... and where mirrors show them
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
@@ -127,12 +128,23 @@ class Frame:
             self.caster, scene.camera, scene.lighting.lights, tile, self.flat, self.heights, settings.tolerance,
             settings.seed,
         )  # fmt: skip
-        cast = clock()
-        radiance = np.zeros((len(seen.footprints), 5))  # RGB, predicted error, cost
+        spent = {"cast": clock() - begin}
+        radiance, method = self._look(seen, spent)
+        start = clock()
+        film.develop(
+            seen.footprints, radiance, method, tile.x, tile.y, tile.width, scene.camera, scene.lighting, image, methods
+        )  # fmt: skip
+        self._put(tile, image, methods)
+        return spent | {"film": clock() - start}
+
+    def _look(self, seen: Footprints, spent: dict[str, float]) -> tuple[Floats, NDArray[np.uint8]]:
+        """What the camera sees in footprints: radiance, predicted error and cost (n, 5), and method (n,); add up the
+        seconds of each stage."""
+        scene, settings = self.scene, self.settings
+        radiance = np.zeros((len(seen.footprints), 5))
         method = np.full(len(seen.footprints), BASE, np.uint8)
         of = seen.frames["object"][seen.footprints["frame"]]
         grooved = seen.frames["grooved"][seen.footprints["frame"]] != 0
-        spent: dict[str, float] = {}
         within = seen.frames["within"][seen.footprints["frame"]] != 0
         if within.any():
             self._look_out(seen, np.flatnonzero(within), radiance, method, spent)
@@ -145,12 +157,7 @@ class Frame:
             ):
                 if len(chosen):
                     self._shade(row, pattern, seen, chosen, radiance, method, spent)
-        start = clock()
-        film.develop(
-            seen.footprints, radiance, method, tile.x, tile.y, tile.width, scene.camera, scene.lighting, image, methods
-        )  # fmt: skip
-        self._put(tile, image, methods)
-        return spent | {"cast": cast - begin, "film": clock() - start}
+        return radiance, method
 
     @property
     def rays_go_on(self) -> bool:
@@ -202,6 +209,7 @@ class Frame:
             shown = self._mirrors(part._replace(lighting=alone), chosen)
             left = chosen[method[chosen] != AREA]
             self._direct(part._replace(lighting=alone), left)
+            shown = np.maximum(shown, self._others(part, chosen))
             self._sample(part, chosen[shown == REFLECTED], settings.bounces, indirect=True, shown=True)
             self._sample(part, chosen[shown == 0], settings.bounces, indirect=True)
 
@@ -342,6 +350,55 @@ class Frame:
             )  # fmt: skip
             part.took("area", start)
         return shown[chosen]
+
+    def _others(self, part: Part, chosen: NDArray[np.int64]) -> NDArray[np.uint8]:
+        """Add what flat mirrors show of other objects to footprints: of which that is done (n,), none, REFLECTED or
+        ALL."""
+        scene, settings = self.scene, self.settings
+        done = np.zeros(len(chosen), np.uint8)
+        lights_on = answers(scene.materials, scene.slots[part.row][:1])
+        if (
+            not lights_on & MIRROR or settings.method not in ("auto", "area") or int(part.row) not in self.flat
+            or not self.rays_go_on or scene.objects["clear"].any()
+        ):  # fmt: skip
+            return done
+        footprints, camera = part.seen.footprints, scene.camera
+        plain = mirror.shows_others(part.pattern, footprints, chosen, part.seen.frames, camera)
+        which = chosen[plain]
+        if not len(which):
+            return done
+        start = time.perf_counter()
+        obj, material = scene.objects[part.row], scene.materials[scene.slots[part.row][0]]
+        normal = np.ascontiguousarray(obj["rotation"][:, 2])
+        camera, shapes = mirror.camera_behind(camera, obj), Mirrored(self.caster, int(part.row))
+        weak = settings.tolerance / mirror.strongest(footprints, which, camera, normal, material)
+        inner = replace(
+            self,
+            scene=scene._replace(camera=camera),
+            settings=settings._replace(
+                bounces=settings.bounces - 1, tolerance=min(weak, WEAK), seed=settings.seed + int(part.row) + 1
+            ),
+            flat=flat_frames(shapes, camera.origin),
+        )
+        seen = footprints_within(
+            shapes, camera, scene.lighting.lights, footprints[which], inner.flat, self.heights,
+            inner.settings.tolerance, inner.settings.seed,
+        )  # fmt: skip
+        passes = seen.footprints["open"] != 0  # outlines that rays may pass by are left to those
+        if passes.any():
+            whole = np.ones(len(which), np.bool_)
+            whole[seen.footprints["pixel"][passes]] = False
+            seen = seen._replace(footprints=seen.footprints[whole[seen.footprints["pixel"]]])
+            seen.footprints["pixel"] = (np.cumsum(whole) - 1)[seen.footprints["pixel"]]
+            plain[plain] = whole
+            which = which[whole]
+        part.took("cast", start)
+        found, _ = inner._look(seen, part.spent)
+        mirror.reflect_shown(
+            seen.footprints, found, camera, scene.lighting, normal, material, footprints, which, part.radiance
+        )
+        done[plain] = REFLECTED if lights_on & (DIFFUSE | GLOSSY) else ALL
+        return done
 
     def _sample(
         self, part: Part, chosen: NDArray[np.int64], bounces: int = 0, *, indirect: bool = False, shown: bool = False,

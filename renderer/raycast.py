@@ -159,3 +159,35 @@ class Caster:
             distances.astype(np.float32), query="OCCLUDED",
         )  # fmt: skip
         return np.asarray(hits >= 0)
+
+
+class Mirrored:
+    """The shapes of a scene as the eye's image sees them, through the rectangle that it is the image in."""
+
+    def __init__(self, shapes: Caster, row: int) -> None:
+        """row: of OBJECT, the mirror."""
+        self._shapes, self._row = shapes, row
+        self.objects, self.shells, self.shadows = shapes.objects, shapes.shells, shapes.shadows
+        self.frames, self.blocked, self.blocked_off = shapes.frames, shapes.blocked, shapes.blocked_off
+
+    def _through(self, origin: Floats, directions: Floats) -> tuple[Floats, Floats]:
+        """Where rays pass the mirror's plane, (n, 3), and how far off that is (n,) in lengths of their directions."""
+        normal, place = self.objects["rotation"][self._row][:, 2], self.objects["translation"][self._row]
+        far = float(normal @ (place - origin)) / (directions @ normal)
+        return origin + far[:, None] * directions, far
+
+    def hits(self, origin: Floats, directions: Floats) -> NDArray[np.void]:
+        """As `Caster.hits`, of rays from the eye's image; of those that have an origin each, as they are."""
+        if origin.ndim > 1:
+            return self._shapes.hits(origin, directions)
+        start, far = self._through(origin, directions)
+        hits = self._shapes.hits(start, directions, np.full(len(directions), self._row, np.int32))
+        hits["t"] += far
+        return hits
+
+    def shell_hits(self, origin: Floats, directions: Floats) -> NDArray[np.void]:
+        """As `Caster.shell_hits`."""
+        start, far = self._through(origin, directions)
+        hits = self._shapes.shell_hits(start, directions)
+        hits["t"] += far
+        return hits

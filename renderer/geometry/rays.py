@@ -67,7 +67,8 @@ def follow(
     """What comes back along the ray that leaves `start` (off the surface, pattern space) by `way` (unit, world), times
     `through`, RGB: the light of what it meets, and of what the rays from there meet, up to so many `bounces`.
 
-    shown: the light of what is met first is known, and so is what mirrors send on from there: both are left out.
+    shown: the light of what is met first is known, on this surface or another, and so is what mirrors send on from
+    there: both are left out.
     steer: by how much its first slopes to the plane differ from those of `way`, over a mesh. within: it is inside the
     body. Each of a footprint's samples, of that number, draws its own rays; (px, py) is the footprint's
     place on the screen. Where the last one meets the surface, that is lit by all of the sky; from within it shows no
@@ -105,7 +106,7 @@ def follow(
             if m.w == -math.inf:
                 clear = max((bottom if within else 0.0) - w, 0.0) / rise
         if m.w == -math.inf:
-            if leaves and len(leaving) > 0:
+            if leaves and not shown and len(leaving) > 0:
                 ray = leaving[gone[0]]
                 gone[0] += 1
                 ox, oy, ow = bent(frame, x, y, w) if curved else (x, y, w)

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from renderer.kernel import leaf
-from renderer.shading import Vector, direction_to_pattern
-from renderer.tables import Camera
+from renderer.shading import Vector, direction_to_pattern, has_picture, sky_from, unit
+from renderer.tables import Camera, Lighting
 
 
 class View(NamedTuple):
@@ -33,6 +33,7 @@ class View(NamedTuple):
     q: float
 
 
+FINEST = 16  # places in a square, each way, at which a picture of the sky is looked at, at most
 GRAZING = 0.2
 """A corner whose ray meets the plane at less than this part of the centre's slope is near the plane's horizon: the
 map is then replaced by its tangent at the centre. It happens on curved objects alone, at their silhouettes."""
@@ -43,6 +44,24 @@ def through_screen(camera: Camera, x: float, y: float) -> Vector:
     """The direction of the ray through the screen point (x, y), pixels, in the world; no unit vector."""
     c, r, d = camera.corner, camera.right, camera.down
     return c[0] + x * r[0] + y * d[0], c[1] + x * r[1] + y * d[1], c[2] + x * r[2] + y * d[2]
+
+
+@leaf
+def sky_behind(lighting: Lighting, camera: Camera, x: float, y: float, size: float) -> Vector:
+    """The mean radiance of the sky in a square of the screen: where it is a picture, no texel is missed."""
+    across, red, green, blue = 1, 0.0, 0.0, 0.0  # places in it, each way, at which the sky is looked at
+    if has_picture(lighting):
+        r, d = camera.right, camera.down
+        right, down = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+        wide = size * math.sqrt(max(right, down))
+        finest = max(lighting.surroundings.tables[0, 1], lighting.surroundings.tables[0, 2] // 2)
+        across = min(max(int(math.ceil(wide * finest / math.pi)), 2), FINEST)
+    for k in range(across * across):
+        u, v = (k % across + 0.5) / across, (k // across + 0.5) / across
+        sky = sky_from(lighting, unit(through_screen(camera, x + size * u, y + size * v)))
+        red, green, blue = red + sky[0], green + sky[1], blue + sky[2]
+    places = across * across
+    return red / places, green / places, blue / places
 
 
 @leaf
