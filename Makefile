@@ -1,7 +1,7 @@
 # Everything from a fresh checkout with Python 3.11+, a shell and make:
 #   make serve   the editor and the service on http://127.0.0.1:8000/, with an example open
 #   make test    every check and every test, the browser's too
-#   make bench   what the README's numbers come from; about a quarter of an hour
+#   make bench   what the README's numbers come from; about three quarters of an hour
 #   make lock    the lock files anew, from pyproject.toml
 
 PYTHON ?= python3

@@ -75,6 +75,17 @@ def ball() -> schema.Scene:
     return _scene(told)
 
 
+def polished_floor() -> schema.Scene:
+    """The tiled floor of figure 20 as a mirror, with the walls' bricks in it."""
+    told = _room({}, {"shape": {"type": "sphere", "radius": 0.5}, "translate": [0, 0, 0.52]}, [], 1)
+    told["objects"][0] = told["objects"][0] | {"material": "floor", "pattern": None}
+    told["objects"][1]["material"] = "glass"
+    told["materials"]["glass"] = {"base_color": [0.85, 0.82, 0.8], "metallic": 1, "roughness": 0}
+    del told["patterns"]["cuts"]
+    told["camera"] |= {"origin": [0.9, -2.6, 1.6], "target": [-0.2, 0.2, -0.3], "fov": 40}
+    return _scene(told)
+
+
 def _room(material: Json, body: Json, cuts: list[Json], bounces: int) -> Json:
     """A body on a tiled floor before two walls of brick."""
     joint = {"type": "trapezoid", "width": 0.03, "floor": 0.015, "depth": 0.012}

@@ -109,6 +109,8 @@ def cases() -> list[Case]:
         Case("20 (d)", Said(382, 149), "both", figures.glass(6), (*GLASS, *_geometry(8)), 8, 150.0),
         Case("11 (2008)", None, "a grooved ball of glass, of the paper of 2008", figures.ball(),
              (*GLASS, *_geometry(8)), 8, 150.0),
+        Case("20, polished", None, "the floor of figure 20 as a mirror, one bounce: no figure of the report",
+             figures.polished_floor(), (*AUTO, Setting("csg", 64), *_geometry(8)), 8, 110.0),
         Case("21", Said(81, 863), "a house: nine grooved objects, in a pool and in windows", load("house"),
              (*AUTO, *_geometry(8)), 8, 90.0, lambda name: (EXAMPLES / name).read_bytes()),
     ]  # fmt: skip

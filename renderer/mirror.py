@@ -23,6 +23,9 @@ from renderer.shading import dot, mirrored, unit
 from renderer.tables import Camera, Floats, Lighting, Pattern
 
 SOME = fixed(64)  # pieces that are looked at near a footprint; where more are near it is taken to see one
+LEAST = (
+    0.25  # of a pixel's side: what smaller parts of it show is left to rays, or mirrors would split each other's edges
+)
 
 
 def camera_behind(camera: Camera, mirror: np.void) -> Camera:
@@ -37,14 +40,14 @@ def shows_others(
     pattern: Pattern, footprints: NDArray[np.void], chosen: NDArray[np.int64], frames: NDArray[np.void], camera: Camera
 ) -> NDArray[np.bool_]:
     """Which of the footprints `chosen` (n,) of a rectangle see its plane alone, past no ridge and no groove, and show
-    none of them; only whole squares, which are looked at all over."""
+    none of them; only whole squares, which are looked at all over, and none of the smallest."""
     owned = nearby(pattern, SOME)
     found = borrow(owned)
     pattern, frames, camera = borrow(pattern), borrow(frames), borrow(camera)
     plain = np.zeros(len(chosen), np.bool_)
     for j in range(len(chosen)):
         footprint = footprints[chosen[j]]
-        if footprint.weight != footprint.size * footprint.size:
+        if footprint.size < LEAST or footprint.weight != footprint.size * footprint.size:
             continue
         frame = frames[footprint.frame]
         view = view_of(footprint, frame, camera)

@@ -42,6 +42,7 @@ TILE = 64  # pixels
 RAYS = 1 << 14  # from one object to others, at a time
 ROUGH = 0.03  # the error that may be left on meshes' curved bases: next to the terminator light is wrong all over
 FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster,
+FEWEST = 8  # footprints of a tile that see a mirror: what fewer show is left to rays, or mirrors would go on to no end
 WEAK = 0.1  # the tolerance, at most, of what a weak mirror shows
 FEWER_STRIPS = 64  # ... and where mirrors show them
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
@@ -365,7 +366,7 @@ class Frame:
         footprints, camera = part.seen.footprints, scene.camera
         plain = mirror.shows_others(part.pattern, footprints, chosen, part.seen.frames, camera)
         which = chosen[plain]
-        if not len(which):
+        if len(which) < FEWEST:
             return done
         start = time.perf_counter()
         obj, material = scene.objects[part.row], scene.materials[scene.slots[part.row][0]]
