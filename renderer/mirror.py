@@ -23,9 +23,7 @@ from renderer.shading import dot, mirrored, unit
 from renderer.tables import Camera, Floats, Lighting, Pattern
 
 SOME = fixed(64)  # pieces that are looked at near a footprint; where more are near it is taken to see one
-LEAST = (
-    0.25  # of a pixel's side: what smaller parts of it show is left to rays, or mirrors would split each other's edges
-)
+LEAST = 0.25  # of a pixel's side: what smaller parts show is left to rays, or mirrors would split each other's edges
 
 
 def camera_behind(camera: Camera, mirror: np.void) -> Camera:

@@ -372,18 +372,19 @@ class Frame:
         obj, material = scene.objects[part.row], scene.materials[scene.slots[part.row][0]]
         normal = np.ascontiguousarray(obj["rotation"][:, 2])
         camera, shapes = mirror.camera_behind(camera, obj), Mirrored(self.caster, int(part.row))
-        weak = settings.tolerance / mirror.strongest(footprints, which, camera, normal, material)
+        strong = mirror.strongest(footprints, which, camera, normal, material)
+        tolerance = min(settings.tolerance / max(strong, settings.tolerance), WEAK)
         inner = replace(
             self,
             scene=scene._replace(camera=camera),
             settings=settings._replace(
-                bounces=settings.bounces - 1, tolerance=min(weak, WEAK), seed=settings.seed + int(part.row) + 1
+                bounces=settings.bounces - 1, tolerance=tolerance, seed=settings.seed + int(part.row) + 1
             ),
             flat=flat_frames(shapes, camera.origin),
         )
         seen = footprints_within(
-            shapes, camera, scene.lighting.lights, footprints[which], inner.flat, self.heights,
-            inner.settings.tolerance, inner.settings.seed,
+            shapes, camera, scene.lighting.lights, footprints[which], inner.flat, self.heights, tolerance,
+            inner.settings.seed,
         )  # fmt: skip
         passes = seen.footprints["open"] != 0  # outlines that rays may pass by are left to those
         if passes.any():

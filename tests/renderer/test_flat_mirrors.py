@@ -116,6 +116,13 @@ def test_an_even_room_is_a_furnace(picture: Callable[..., Any]) -> None:
     assert np.abs(ours.radiance[shown] - 1.0).max() < SINGLE
 
 
+def test_a_black_mirror_seen_head_on_shows_nothing(picture: Callable[..., Any]) -> None:
+    """Schlick's Fresnel is nought there in one pixel, and next to nought about it."""
+    data = room({"base_color": [0, 0, 0], "metallic": 1, "roughness": 0}, 1, [])
+    data["camera"] |= {"origin": [1, -1, 3], "target": [1, -1, 0], "up": [0, 1, 0], "fov": 1, "resolution": [7, 5]}
+    assert np.abs(picture(data, method="auto").radiance).max() < 1e-6
+
+
 def test_the_image_of_the_image_is_the_camera() -> None:
     compiled = compile_scene(checked(room(CHROME, 1, [])), (48, 36), PatternCache(), None)
     for obj in compiled.objects[:2]:
