@@ -11,7 +11,7 @@ class Material(Model):
     Dielectric: mix(base_color / pi, GGX, F) with Schlick's Fresnel F, F0 = specular * ((ior - 1) / (ior + 1))^2 and
     F90 = specular. Metal: GGX with F0 = base_color, F90 = 1. GGX has the height-correlated Smith term and
     alpha = roughness^2. `specular: 0, roughness: 1` is pure Lambert, base_color / pi. `roughness: 0` is an ideal
-    mirror or refractor, seen by bounces alone.
+    mirror or refractor, seen by bounces alone; any other below 0.001 counts as 0.001.
 
     With `transmission` a surface is where a body of `ior` meets the air: light goes into it and out of it, a bounce
     each, times `base_color`, and is reflected totally from within beyond the critical angle. A sphere, a cylinder or a

@@ -36,6 +36,8 @@ from renderer.tables import (
     Surroundings,
 )
 
+SMOOTHEST = 1e-3  # roughness; GGX of less, a lobe of a millionth of a radian, is rounding
+
 
 class CompiledScene(NamedTuple):
     """All that a render reads."""
@@ -179,7 +181,8 @@ def _material(material: schema.Material) -> NDArray[np.void]:
     row = np.zeros(1, MATERIAL)
     row["base_color"], row["emissive"] = material.base_color, material.emissive
     row["metallic"], row["transmission"], row["ior"] = material.metallic, material.transmission, material.ior
-    row["alpha"] = material.roughness**2
+    if material.roughness > 0.0:
+        row["alpha"] = max(material.roughness, SMOOTHEST) ** 2
     row["f0"] = material.specular * ((material.ior - 1.0) / (material.ior + 1.0)) ** 2
     row["f90"] = material.specular
     return row

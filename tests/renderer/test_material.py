@@ -17,6 +17,7 @@ from renderer.tables import MATERIAL
 from .scenes import SKY, Floats, Json
 
 Plate = Callable[..., Json]
+SUN = {"type": "directional", "direction": [0, 0, -1], "irradiance": [1, 1, 1]}  # straight above, as one eye is
 
 
 def material(**more: Any) -> NDArray[np.void]:
@@ -125,3 +126,23 @@ def test_the_sky_is_the_sum_of_all_lights(plate: Plate, picture: Callable[..., p
     row = material(base_color=(0.8, 0.5, 0.2), alpha=0.36, metallic=0.3, f0=0.04, f90=1.0)
     total = answers(row, eyes(0.8, len(directions)), directions).sum(axis=0) * angle
     assert seen == pytest.approx(total, abs=0.02)
+
+
+@pytest.mark.parametrize("kind", [{"metallic": 1}, {"transmission": 1}, {}], ids=["metal", "glass", "coat"])
+@pytest.mark.parametrize("roughness", [1e-300, 1e-12, 1e-5])
+def test_roughness_next_to_nought(
+    kind: Json, roughness: float, plate: Plate, radiance: Callable[..., Floats]
+) -> None:  # fmt: skip
+    """It counts as a thousandth, and highlights of a millionth of a radian, which pixels hardly meet, break nothing."""
+    groove = {"path": {"type": "polyline", "points": [[0.5, -1], [0.9, 3]]},
+              "profile": {"type": "v", "width": 0.3, "depth": 0.1}}  # fmt: skip
+    pictures = [
+        radiance(
+            plate([groove], materials={"stone": kind | {"roughness": value}}, render={"bounces": 2}, lights=[SKY, SUN],
+                  camera={"origin": [0, 0, 2], "resolution": [17, 13]}),
+            method="auto", samples=16,
+        )
+        for value in (roughness, 0.001)
+    ]  # fmt: skip
+    assert np.isfinite(pictures[0]).all()
+    np.testing.assert_array_equal(pictures[0], pictures[1])
