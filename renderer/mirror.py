@@ -2,7 +2,8 @@
 
 Where a footprint sees nothing but the plane of a rectangle, all its rays go on from one point, the eye's image in that
 plane, through the same square of the screen. So what it shows are footprints again, for a camera that is mirrored, and
-what they see is found as what the camera sees: grooves by their areas, edges split. It leads from mirror to mirror.
+what they see is found as what the camera sees: grooves by their areas, edges split. It leads from mirror
+to mirror.
 
 The papers follow rays with cones about them. A cone is round and ends nowhere; footprints are the pixel's own and fit
 to each other, so that nothing is left out or counted twice. What curved mirrors and facets of grooves show is sampled.
@@ -23,6 +24,7 @@ from renderer.shading import dot, mirrored, unit
 from renderer.tables import Camera, Floats, Lighting, Pattern
 
 SOME = fixed(64)  # pieces that are looked at near a footprint; where more are near it is taken to see one
+WEAKEST = fixed(6)  # halves
 LEAST = 0.25  # of a pixel's side: what smaller parts show is left to rays, or mirrors would split each other's edges
 
 
@@ -62,28 +64,32 @@ def shows_others(
 
 
 @kernel
-def strongest(
+def weakness(
     footprints: NDArray[np.void], chosen: NDArray[np.int64], camera: Camera, normal: Floats, material: np.void
-) -> float:
-    """The largest part of radiance that a mirror of this normal sends on in any of the footprints `chosen`."""
-    most = 0.0
+) -> NDArray[np.int64]:
+    """How often a half (n,), up to WEAKEST, still is the largest part of radiance that a mirror of this normal sends on
+    in the footprints `chosen` (n,)."""
+    weak = np.zeros(len(chosen), np.int64)
     n = (normal[0], normal[1], normal[2])
-    for index in chosen:
-        footprint = footprints[index]
+    for j in range(len(chosen)):
+        footprint = footprints[chosen[j]]
         middle = 0.5 * footprint.size
         way = unit(through_screen(camera, footprint.x + middle, footprint.y + middle))
         part = mirrored(material, abs(dot(n, way)))
-        most = max(most, max(part[0], part[1], part[2]))
-    return most
+        most = max(part[0], part[1], part[2])
+        while weak[j] < WEAKEST and most <= 0.5:
+            weak[j], most = weak[j] + 1, 2.0 * most
+    return weak
 
 
 @kernel
 def reflect_shown(
     shown: NDArray[np.void], seen: Floats, camera: Camera, lighting: Lighting, normal: Floats, material: np.void,
-    footprints: NDArray[np.void], chosen: NDArray[np.int64], radiance: Floats,
+    footprints: NDArray[np.void], chosen: NDArray[np.int64], left_out: NDArray[np.bool_], radiance: Floats,
 ) -> None:  # fmt: skip
     """Add to the radiance, error and cost (m, 5) of the footprints `chosen` (n,) what a mirror of this normal sends on
-    of what it shows: FOOTPRINTs, whose `pixel` says in which of the n, with their own (k, 5); else the sky.
+    of what it shows: FOOTPRINTs, whose `pixel` says in which of the n, with their own (k, 5); else the sky. None to
+    those that are left out (n,).
 
     camera: the mirrored one.
     """
@@ -98,6 +104,8 @@ def reflect_shown(
             light[j, c] += share * seen[i, c]
         light[j, 4] += seen[i, 4]
     for j in range(len(chosen)):
+        if left_out[j]:
+            continue
         footprint = footprints[chosen[j]]
         x, y, size = footprint.x, footprint.y, footprint.size
         part = mirrored(material, abs(dot(n, unit(through_screen(camera, x + 0.5 * size, y + 0.5 * size)))))

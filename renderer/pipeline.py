@@ -42,7 +42,7 @@ TILE = 64  # pixels
 RAYS = 1 << 14  # from one object to others, at a time
 ROUGH = 0.03  # the error that may be left on meshes' curved bases: next to the terminator light is wrong all over
 FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster,
-FEWEST = 8  # footprints of a tile that see a mirror: what fewer show is left to rays, or mirrors would go on to no end
+MIRRORS = 4  # in one another are looked into, so many at most: what is deeper is left to rays
 WEAK = 0.1  # the tolerance, at most, of what a weak mirror shows
 FEWER_STRIPS = 64  # ... and where mirrors show them
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
@@ -76,6 +76,7 @@ class Settings(NamedTuple):
     seed: int
     texels: int
     tolerance: float
+    mirrors: int = 0  # that are seen in one another before what is to be rendered
 
 
 class Part(NamedTuple):
@@ -360,45 +361,42 @@ class Frame:
         lights_on = answers(scene.materials, scene.slots[part.row][:1])
         if (
             not lights_on & MIRROR or settings.method not in ("auto", "area") or int(part.row) not in self.flat
-            or not self.rays_go_on or scene.objects["clear"].any()
+            or not self.rays_go_on or scene.objects["clear"].any() or settings.mirrors == MIRRORS
         ):  # fmt: skip
             return done
-        footprints, camera = part.seen.footprints, scene.camera
-        plain = mirror.shows_others(part.pattern, footprints, chosen, part.seen.frames, camera)
-        which = chosen[plain]
-        if len(which) < FEWEST:
-            return done
-        start = time.perf_counter()
+        plain = mirror.shows_others(part.pattern, part.seen.footprints, chosen, part.seen.frames, scene.camera)
         obj, material = scene.objects[part.row], scene.materials[scene.slots[part.row][0]]
-        normal = np.ascontiguousarray(obj["rotation"][:, 2])
-        camera, shapes = mirror.camera_behind(camera, obj), Mirrored(self.caster, int(part.row))
-        strong = mirror.strongest(footprints, which, camera, normal, material)
-        tolerance = min(settings.tolerance / max(strong, settings.tolerance), WEAK)
-        inner = replace(
-            self,
-            scene=scene._replace(camera=camera),
-            settings=settings._replace(
-                bounces=settings.bounces - 1, tolerance=tolerance, seed=settings.seed + int(part.row) + 1
-            ),
-            flat=flat_frames(shapes, camera.origin),
-        )
-        seen = footprints_within(
-            shapes, camera, scene.lighting.lights, footprints[which], inner.flat, self.heights, tolerance,
-            inner.settings.seed,
-        )  # fmt: skip
-        passes = seen.footprints["open"] != 0  # outlines that rays may pass by are left to those
-        if passes.any():
-            whole = np.ones(len(which), np.bool_)
-            whole[seen.footprints["pixel"][passes]] = False
-            seen = seen._replace(footprints=seen.footprints[whole[seen.footprints["pixel"]]])
-            seen.footprints["pixel"] = (np.cumsum(whole) - 1)[seen.footprints["pixel"]]
-            plain[plain] = whole
-            which = which[whole]
-        part.took("cast", start)
-        found, _ = inner._look(seen, part.spent)
-        mirror.reflect_shown(
-            seen.footprints, found, camera, scene.lighting, normal, material, footprints, which, part.radiance
-        )
+        camera, normal = mirror.camera_behind(scene.camera, obj), np.ascontiguousarray(obj["rotation"][:, 2])
+        shapes = Mirrored(self.caster, int(part.row))
+        flat = flat_frames(shapes, camera.origin)
+        weak = mirror.weakness(part.seen.footprints, chosen, camera, normal, material)
+        for power in np.unique(weak[plain]):
+            tolerance = min(settings.tolerance * 2.0**power, WEAK)
+            inner = replace(
+                self,
+                scene=scene._replace(camera=camera),
+                settings=settings._replace(
+                    bounces=settings.bounces - 1, tolerance=tolerance, mirrors=settings.mirrors + 1,
+                    seed=settings.seed + int(part.row) + 1,
+                ),
+                flat=flat,
+            )  # fmt: skip
+            some = np.flatnonzero(plain & (weak == power))
+            squares = part.seen.footprints[chosen[some]]
+            start = time.perf_counter()
+            seen = footprints_within(
+                shapes, camera, scene.lighting.lights, squares, flat, self.heights, tolerance, inner.settings.seed
+            )
+            passes = np.zeros(len(some), np.bool_)  # outlines that rays may pass by are left to those
+            passes[seen.footprints["pixel"][seen.footprints["open"] != 0]] = True
+            plain[some[passes]] = False
+            seen = seen._replace(footprints=seen.footprints[~passes[seen.footprints["pixel"]]])
+            part.took("cast", start)
+            found, _ = inner._look(seen, part.spent)
+            mirror.reflect_shown(
+                seen.footprints, found, camera, scene.lighting, normal, material, part.seen.footprints, chosen[some],
+                passes, part.radiance,
+            )  # fmt: skip
         done[plain] = REFLECTED if lights_on & (DIFFUSE | GLOSSY) else ALL
         return done
 

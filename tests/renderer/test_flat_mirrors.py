@@ -116,6 +116,14 @@ def test_an_even_room_is_a_furnace(picture: Callable[..., Any]) -> None:
     assert np.abs(ours.radiance[shown] - 1.0).max() < SINGLE
 
 
+@pytest.mark.parametrize("material", [CHROME, COATED], ids=["chrome", "coat"])
+def test_the_same_for_any_tiling(picture: Callable[..., Any], material: Json) -> None:
+    data = room(material, 3, [JOINTS])
+    data["objects"][1] |= {"material": "floor"}
+    one, two = (picture(data, method="auto", samples=64, tile=tile, threads=2) for tile in (64, 11))
+    np.testing.assert_array_equal(one.radiance, two.radiance)
+
+
 def test_a_black_mirror_seen_head_on_shows_nothing(picture: Callable[..., Any]) -> None:
     """Schlick's Fresnel is nought there in one pixel, and next to nought about it."""
     data = room({"base_color": [0, 0, 0], "metallic": 1, "roughness": 0}, 1, [])
