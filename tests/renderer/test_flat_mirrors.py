@@ -23,8 +23,8 @@ CHROME = {"base_color": [0.9, 0.85, 0.8], "metallic": 1, "roughness": 0}
 PERFECT = {"base_color": [1, 1, 1], "metallic": 1, "roughness": 0}
 COATED = {"base_color": [0.3, 0.35, 0.4], "roughness": 0, "ior": 1.5}
 CLAY = {"base_color": [0.7, 0.5, 0.3], "specular": 0}
-SUN = {"type": "directional", "direction": [0.5, 0.8, -1], "irradiance": [2.2, 2.1, 1.9]}
-SKY = {"type": "constant", "radiance": [0.4, 0.45, 0.5]}
+SUN: Json = {"type": "directional", "direction": [0.5, 0.8, -1], "irradiance": [2.2, 2.1, 1.9]}
+SKY: Json = {"type": "constant", "radiance": [0.4, 0.45, 0.5]}
 
 
 def along(start: list[float], end: list[float], profile: Json, count: int, step: list[float]) -> Json:
@@ -34,6 +34,7 @@ def along(start: list[float], end: list[float], profile: Json, count: int, step:
 
 FINE = along([-1, 0.1], [9, 0.1], {"type": "v", "width": 0.02, "depth": 0.01}, 200, [0, 0.02])  # several a pixel
 WIDE = along([1.3, -1], [1.3, 9], {"type": "trapezoid", "width": 0.2, "floor": 0.1, "depth": 0.08}, 3, [0.8, 0])
+FLUTES = along([-1, 0.05], [9, 0.05], {"type": "v", "width": 0.06, "depth": 0.02}, 50, [0, 0.08])  # finer afar
 JOINTS = along([0.4, -1], [0.4, 9], {"type": "trapezoid", "width": 0.1, "floor": 0.05, "depth": 0.04}, 5, [0.9, 0])
 LIP = along([-1, 1.3], [9, 1.3], {"type": "v", "width": 0.1, "depth": -0.05}, 1, [0, 1])
 HOOPS = along([-1, 0.5], [13, 0.5], {"type": "v", "width": 0.6, "depth": -0.2}, 4, [0, 1])
@@ -73,6 +74,17 @@ def test_a_mirror_shows_what_rays_meet(picture: Callable[..., Any], floor: list[
     noise = np.sqrt((0.25 * (one - two)[shown] ** 2).mean())
     assert np.sqrt((off**2).mean()) < 1.3 * noise
     assert abs(off.mean()) < 0.0002
+
+
+def test_grooves_in_a_grooved_mirror_are_antialiased(radiance: Callable[..., Floats]) -> None:
+    """By as many samples a pixel as the tolerance asks for."""
+    data = room(CHROME, 1, [FLUTES])
+    data["objects"][2]["pattern"] = None
+    one, two = (radiance(data, method="geometry", samples=900, seed=s) for s in (1, 2))
+    ours = radiance(data, method="auto", samples=4096, tolerance=0.01)
+    white = np.mean(SKY["radiance"]) + np.mean(SUN["irradiance"]) / np.pi
+    off = np.abs((ours - 0.5 * (one + two)).mean(axis=2)) / white
+    assert (off < 0.01).mean() > 0.97
 
 
 @pytest.mark.parametrize("bounces", [1, 2])
