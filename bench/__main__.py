@@ -5,8 +5,7 @@
 
 Takes about three quarters of an hour on two cores, nearly all for the references of `papers`, which writes
 docs/PAPERS.md, and of `special`, which keeps its own in bench/out. `stability` takes about twenty minutes, is measured
-only where it is named, and writes the maps and tables of
-docs/STABILITY.md.
+only where it is named, and writes the maps and tables of docs/STABILITY.md.
 """
 
 from __future__ import annotations

@@ -71,7 +71,7 @@ def csg(
     there are none, as many as the tolerance asks for, with no bounces, for their mean. sparing: NOT_MINE, where that is
     more than it is worth. tolerance: relative to a white surface in the same light; on round shapes rays keep to their
     curves as it asks. bounces: how often light is followed from facet to facet; indirect: that light alone, added to
-    what is there; shown: without what mirrors show one another, which is there too. leaving: room for each sample's RAY
+    what is there; shown: without what mirrors show, which is there too. leaving: room for each sample's RAY
     (`rays.follow`), if others are to meet them; `gone` (1,) is how many there are. asking, asked: the same for light
     that another object may keep from where a footprint is `torn`; its `number` is the light's. slots: rows of
     `materials` for the pattern's facets, the object's own first.

@@ -125,7 +125,7 @@ def footprints_within(
     flat: dict[int, NDArray[np.void]], heights: Floats, tolerance: float, seed: int,
 ) -> Footprints:  # fmt: skip
     """The same for the squares of FOOTPRINTs (n,); `pixel` is which of these each is a part of."""
-    x, y, size = squares["x"].copy(), squares["y"].copy(), squares["size"].copy()
+    x, y, size = squares["x"], squares["y"], squares["size"]
     corners, around = _own_corners(x, y, size)
     pixel = np.arange(len(squares), dtype=np.int32)
     return _split(shapes, camera, lights, pixel, (x, y, size), corners, around, flat, heights, tolerance, seed)

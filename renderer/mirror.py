@@ -2,11 +2,10 @@
 
 Where a footprint sees nothing but the plane of a rectangle, all its rays go on from one point, the eye's image in that
 plane, through the same square of the screen. So what it shows are footprints again, for a camera that is mirrored, and
-what they see is found as what the camera sees: grooves by their areas, edges split. It leads from mirror
-to mirror.
+what they see is found as what the camera sees: grooves by their areas, edges split; from mirror to mirror.
 
-The papers follow rays with cones about them. A cone is round and ends nowhere; footprints are the pixel's own and fit
-to each other, so that nothing is left out or counted twice. What curved mirrors and facets of grooves show is sampled.
+The report samples what other objects show. Here that is left for curved mirrors and facets of grooves: footprints are
+the pixel's own and fit to each other, so that nothing is left out or counted twice.
 """
 
 from __future__ import annotations
@@ -19,8 +18,8 @@ from numpy.typing import NDArray
 from renderer.geometry.folds import any_within
 from renderer.geometry.query import find, nearby
 from renderer.geometry.view import on_plane, sky_behind, through_screen, view_of
-from renderer.kernel import borrow, fixed, keep, kernel
-from renderer.shading import dot, mirrored, unit
+from renderer.kernel import borrow, fixed, keep, kernel, leaf
+from renderer.shading import Vector, dot, mirrored, unit
 from renderer.tables import Camera, Floats, Lighting, Pattern
 
 SOME = fixed(64)  # pieces that are looked at near a footprint; where more are near it is taken to see one
@@ -63,6 +62,14 @@ def shows_others(
     return plain
 
 
+@leaf
+def sent_on(footprint: np.void, camera: Camera, normal: Floats, material: np.void) -> Vector:
+    """The part of radiance, RGB, that a mirror of this normal sends on in the middle of a footprint."""
+    middle = 0.5 * footprint.size
+    way = unit(through_screen(camera, footprint.x + middle, footprint.y + middle))
+    return mirrored(material, abs(dot((normal[0], normal[1], normal[2]), way)))
+
+
 @kernel
 def weakness(
     footprints: NDArray[np.void], chosen: NDArray[np.int64], camera: Camera, normal: Floats, material: np.void
@@ -70,12 +77,8 @@ def weakness(
     """How often a half (n,), up to WEAKEST, still is the largest part of radiance that a mirror of this normal sends on
     in the footprints `chosen` (n,)."""
     weak = np.zeros(len(chosen), np.int64)
-    n = (normal[0], normal[1], normal[2])
     for j in range(len(chosen)):
-        footprint = footprints[chosen[j]]
-        middle = 0.5 * footprint.size
-        way = unit(through_screen(camera, footprint.x + middle, footprint.y + middle))
-        part = mirrored(material, abs(dot(n, way)))
+        part = sent_on(footprints[chosen[j]], camera, normal, material)
         most = max(part[0], part[1], part[2])
         while weak[j] < WEAKEST and most <= 0.5:
             weak[j], most = weak[j] + 1, 2.0 * most
@@ -94,7 +97,6 @@ def reflect_shown(
     camera: the mirrored one.
     """
     lighting = borrow(lighting)
-    n = (normal[0], normal[1], normal[2])
     light, covered = np.zeros((len(chosen), 5)), np.zeros(len(chosen))
     for i in range(len(shown)):
         j = shown[i].pixel
@@ -107,11 +109,10 @@ def reflect_shown(
         if left_out[j]:
             continue
         footprint = footprints[chosen[j]]
-        x, y, size = footprint.x, footprint.y, footprint.size
-        part = mirrored(material, abs(dot(n, unit(through_screen(camera, x + 0.5 * size, y + 0.5 * size)))))
+        part = sent_on(footprint, camera, normal, material)
         rest = 1.0 - covered[j]
         if rest > 0.0:
-            sky = sky_behind(lighting, camera, x, y, size)
+            sky = sky_behind(lighting, camera, footprint.x, footprint.y, footprint.size)
             for c in range(3):
                 light[j, c] += rest * sky[c]
         for c in range(3):

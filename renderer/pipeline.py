@@ -42,9 +42,9 @@ TILE = 64  # pixels
 RAYS = 1 << 14  # from one object to others, at a time
 ROUGH = 0.03  # the error that may be left on meshes' curved bases: next to the terminator light is wrong all over
 FEW_STRIPS = 512  # `auto` samples where more are near: then that is faster,
+FEWER_STRIPS = 64  # ... and where mirrors show them
 MIRRORS = 4  # in one another are looked into, so many at most: what is deeper is left to rays
 WEAK = 0.1  # the tolerance, at most, of what a weak mirror shows
-FEWER_STRIPS = 64  # ... and where mirrors show them
 MODES = {"auto": STRICT, "line": LOOSE, "segment": PAPER}  # of the kernel `line`; bare surfaces take it as it comes
 METHODS = ("auto", "base", "segment", "line", "lines", "area", "csg", "geometry", "relief")
 
@@ -406,7 +406,7 @@ class Frame:
     ) -> None:  # fmt: skip
         """Shade footprints by `csg`; rays go from facet to facet, and on to other objects if there are any.
 
-        indirect: add what these bring to what is there; shown: but for what mirrors show one another. Of what is torn
+        indirect: add what these bring to what is there; shown: but for what mirrors show. Of what is torn
         or open, all of `chosen` or nothing.
         """
         settings, footprints = self.settings, part.seen.footprints

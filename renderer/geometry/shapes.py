@@ -401,7 +401,8 @@ def frames_at(
     bent: bool, frames: NDArray[np.void], of: Ints,
 ) -> int:  # fmt: skip
     """Write the tangent FRAMEs at the hits (n,) of the rays from `origins` (n, 3) along `directions` (n, 3), and `of`
-    which (n,) each is; how many there are. Hits on one side of a rectangle share the first one's; a miss has none.
+    which (n,) each is; how many there are. Hits on one side of a rectangle share the first one's, and
+    its eye; a miss has none.
 
     Seen from behind, an opaque surface is bare and turned to the viewer. bent: what carries no pattern has a form, too.
     """

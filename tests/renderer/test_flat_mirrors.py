@@ -15,12 +15,12 @@ from renderer.tables import BASE
 
 from .conftest import checked
 from .scenes import SINGLE
+from .test_mirrors import PERFECT, compare
 
 Json = dict[str, Any]
 Floats = NDArray[np.float64]
 
 CHROME = {"base_color": [0.9, 0.85, 0.8], "metallic": 1, "roughness": 0}
-PERFECT = {"base_color": [1, 1, 1], "metallic": 1, "roughness": 0}
 COATED = {"base_color": [0.3, 0.35, 0.4], "roughness": 0, "ior": 1.5}
 CLAY = {"base_color": [0.7, 0.5, 0.3], "specular": 0}
 SUN: Json = {"type": "directional", "direction": [0.5, 0.8, -1], "irradiance": [2.2, 2.1, 1.9]}
@@ -91,12 +91,7 @@ def test_grooves_in_a_grooved_mirror_are_antialiased(radiance: Callable[..., Flo
 def test_a_coat_shows_it_besides_what_the_body_gets(radiance: Callable[..., Floats], bounces: int) -> None:
     data = room(COATED, bounces, [JOINTS])
     data["objects"][2]["pattern"] = None  # hoops cast no shadow on others
-    one, two = (radiance(data, method="geometry", samples=400, seed=s) for s in (1, 2))
-    ours, again = (radiance(data, method="area", samples=256, seed=s) for s in (0, 3))
-    off = ours - 0.5 * (one + two)
-    noise = np.sqrt((0.5 * (ours - again) ** 2 + 0.25 * (one - two) ** 2).mean())
-    assert np.sqrt((off**2).mean()) < 1.24 * noise
-    assert abs(off.mean()) < 8.0 * noise / np.sqrt(off.size)
+    compare(radiance, data, "area", samples=256)
 
 
 def test_mirrors_that_face_each_other(picture: Callable[..., Any]) -> None:

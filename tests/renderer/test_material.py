@@ -130,9 +130,7 @@ def test_the_sky_is_the_sum_of_all_lights(plate: Plate, picture: Callable[..., p
 
 @pytest.mark.parametrize("kind", [{"metallic": 1}, {"transmission": 1}, {}], ids=["metal", "glass", "coat"])
 @pytest.mark.parametrize("roughness", [1e-300, 1e-12, 1e-5])
-def test_roughness_next_to_nought(
-    kind: Json, roughness: float, plate: Plate, radiance: Callable[..., Floats]
-) -> None:  # fmt: skip
+def test_roughness_next_to_nought(kind: Json, roughness: float, plate: Plate, radiance: Callable[..., Floats]) -> None:
     """It counts as a thousandth, and highlights of a millionth of a radian, which pixels hardly meet, break nothing."""
     groove = {"path": {"type": "polyline", "points": [[0.5, -1], [0.9, 3]]},
               "profile": {"type": "v", "width": 0.3, "depth": 0.1}}  # fmt: skip
